@@ -1,0 +1,85 @@
+// Opens a database and reads what is asked for: node records by page, terrain node by node. Everything read is
+// verified; what fails is an error, never a wrong height.
+//
+// Cost of open: area.json and the header and footer of each file. Thread-safety: const members from any thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "formats/area.h"
+#include "formats/container.h"
+#include "formats/file_system.h"
+#include "formats/node_file.h"
+#include "formats/terrain_segment.h"
+#include "libdb/access/grid_geometry.h"
+#include "libdb/access/terrain_tile.h"
+
+namespace deltaz {
+
+inline constexpr std::uint32_t kRootRecord = 1;
+
+// A node record and where it stands.
+struct Node {
+  std::uint32_t number = 0;  // record number
+  NodeRecord record;
+  Vector3 centroid;          // Earth-centred, metres, exact
+  std::array<std::int64_t, 3> centroid_units{};  // the same in kCentroidUnit
+  double radius() const { return static_cast<double>(record.radius) * kCentroidUnit; }
+  // Metres; infinity when unknown.
+  double geometricError() const;
+  double coverageError() const;
+};
+
+class Database {
+ public:
+  // kInvalid if `path` is not a database, kCannotAccess if it cannot be read, kNewerFormat.
+  static Result<Database> open(const FileSystem& files, const std::string& path);
+
+  const std::string& path() const { return path_; }
+  const AreaHeader& area() const { return area_; }
+  const GridGeometry& grid(int index) const { return grids_[static_cast<std::size_t>(index)]; }
+  int gridCount() const { return static_cast<int>(grids_.size()); }
+
+  // The area's cluster node: its children are the grids' cluster nodes, theirs the coarsest terrain nodes.
+  Result<Node> root() const;
+  // The children of `parent`, in child order; at most four.
+  Result<std::vector<Node>> children(const Node& parent) const;
+  // The decoded terrain of a node of type kTerrain.
+  Result<TerrainTile> terrain(const Node& node) const;
+
+  // One record by number, 1 <= number <= area().node_count.
+  Result<NodeRecord> record(std::uint32_t number) const;
+  // A node's block as stored, decoded but not yet checked against its record.
+  Result<TerrainBlock> terrainBlock(const NodeRecord& record) const;
+
+  // Bytes read from all files since open.
+  std::uint64_t bytesRead() const;
+
+  // The files behind it, for dbcheck.
+  const ContainerReader& nodeFile() const { return *nodes_; }
+  const ContainerReader* terrainSegment(std::uint32_t segment) const;
+
+ private:
+  Database() = default;
+
+  std::string path_;
+  AreaHeader area_;
+  std::uint64_t area_bytes_ = 0;
+  std::vector<GridGeometry> grids_;
+  std::unique_ptr<ContainerReader> nodes_;
+  std::vector<std::unique_ptr<ContainerReader>> segments_;  // by segment number
+  struct PageCache {
+    std::mutex mutex;
+    std::vector<std::shared_ptr<const std::vector<NodeRecord>>> pages;
+  };
+  std::unique_ptr<PageCache> page_cache_;
+};
+
+// Visits every terrain node of level `level` of grid `grid`, in record order. Stops at the first error.
+Result<std::vector<Node>> nodesOfLevel(const Database& database, int grid, int level);
+
+}  // namespace deltaz

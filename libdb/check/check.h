@@ -1,0 +1,79 @@
+// Proves a database right or says exactly what is wrong with it. The library behind dbcheck.
+//
+// Levels, each including the ones before it:
+//   structure  area.json, file lengths and identities, headers, footers, block index, the tree of node records
+//   checksum   every block against its checksum, file identities against contents, padding
+//   decode     every node's terrain: it decodes, agrees with its record, its parent's posts and its neighbours' ring
+// `against` adds a comparison with the source, post for post.
+//
+// A damaged database never makes a check crash or stop early without saying so (Report::complete).
+// Thread-safety: one check at a time per Report.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "formats/file_system.h"
+#include "formats/issue_code.h"
+#include "libdb/source/elevation_source.h"
+
+namespace deltaz {
+
+enum class CheckLevel : std::uint8_t { kStructure, kChecksum, kDecode };
+enum class Severity : std::uint8_t { kInformation, kWarning, kError };
+
+// Where an issue is. Members that do not apply are empty.
+struct IssueLocation {
+  std::string file;                         // name in the database folder
+  std::optional<std::uint32_t> block;
+  std::optional<std::uint64_t> offset;      // bytes
+  std::optional<std::uint32_t> node;        // record number
+  std::optional<int> level;
+  std::optional<std::int32_t> x, y;
+  std::optional<double> longitude, latitude;  // degrees
+};
+
+struct Issue {
+  IssueCode code = IssueCode::kNone;
+  Severity severity = Severity::kError;
+  std::string message;
+  IssueLocation where;
+  std::optional<double> magnitude;          // how bad, in the unit the message names (metres for heights)
+};
+
+// Issues of one code: the count is exact, the first kKeptIssues are kept, and the worst by magnitude.
+inline constexpr std::size_t kKeptIssues = 10;
+struct IssueGroup {
+  IssueCode code = IssueCode::kNone;
+  Severity severity = Severity::kError;
+  std::uint64_t count = 0;
+  std::vector<Issue> first;
+  std::optional<Issue> worst;
+};
+
+struct CheckOptions {
+  CheckLevel level = CheckLevel::kDecode;
+  const RawGrid* against = nullptr;  // the source, already read; compared with grid 0
+  std::string against_name;
+  int threads = 0;
+};
+
+struct Report {
+  std::vector<IssueGroup> groups;    // in the order of the codes
+  bool complete = true;              // every check of the level ran to its end
+  std::vector<std::string> skipped;  // what did not run, and why
+  std::uint64_t nodes_checked = 0, blocks_checked = 0, bytes_checked = 0, posts_compared = 0;
+  // Set when the database could not be opened at all or is newer than this version; the issue stands in groups too.
+  std::optional<Error> fatal;
+
+  void add(Issue issue);
+  std::uint64_t count(Severity severity) const;
+};
+
+// Never fails: what goes wrong is in the report.
+Report checkDatabase(const FileSystem& files, const std::string& path, const CheckOptions& options);
+
+}  // namespace deltaz

@@ -1,0 +1,75 @@
+// The one interface of the engines: a database and a view in, a picture and its statistics out.
+// Three engines are planned behind it; each validates the others. `fast` is the product, `reference` the judge (double
+// precision, every full-resolution triangle).
+//
+// Guarantees: the same picture for any thread count. Errors: whatever reading the database reports; kUsage for views
+// that make no sense. Thread-safety: several renders of one database may run at once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "libdb/access/database.h"
+#include "librender/scene/camera.h"
+
+namespace deltaz {
+
+struct Sun {
+  double azimuth = 225;   // degrees clockwise from north, seen from the centre of the area
+  double elevation = 40;  // degrees above the horizon
+};
+
+struct RenderOptions {
+  Camera camera;
+  Sun sun;
+  double tolerance = 1.0;   // pixels; 0 draws full resolution
+  int fixed_level = -1;     // >= 0: draw this level whatever the tolerance (tests and benches)
+  int threads = 0;          // 0: as many as the machine has
+  bool keep_triangle_ids = false;
+};
+
+// What covers a pixel.
+enum class Surface : std::uint8_t { kSky = 0, kSea = 1, kTerrain = 2 };
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;       // 3 bytes a pixel, sRGB, row by row from the top
+  std::vector<float> depth;            // U, metres along the view axis; +infinity for sky
+  std::vector<Surface> surface;
+  std::vector<std::uint64_t> triangle; // only with keep_triangle_ids: node record number << 32 | cell << 1 | (1 for the top face)
+};
+
+struct FrameStatistics {
+  struct Nodes {
+    std::uint64_t visited = 0, out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, drawn = 0;
+  } nodes;
+  struct Triangles {
+    std::uint64_t in = 0, back_facing = 0, clipped = 0, no_sample = 0, drawn = 0;  // in = sum of the others
+  } triangles;
+  struct Samples {
+    std::uint64_t tested = 0, written = 0, shaded = 0;
+  } samples;
+  std::uint64_t bytes_read = 0;
+  std::uint64_t posts_decoded = 0;
+  int level = 0;                       // drawn level of detail
+  double projected_error = 0;          // pixels, bound of what is drawn
+  double depth_complexity = 0;         // samples tested per covered pixel
+  struct Milliseconds {
+    double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;
+  } milliseconds;
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual Result<Picture> render(const Database& database, const RenderOptions& options,
+                                 FrameStatistics& statistics) const = 0;
+};
+
+enum class EngineKind : std::uint8_t { kFast, kReference };
+std::unique_ptr<Engine> makeEngine(EngineKind kind);
+
+}  // namespace deltaz
