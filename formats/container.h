@@ -72,6 +72,7 @@ class ContainerWriter {
   Status pad();
 
   std::unique_ptr<WritableFile> file_;
+  ContentKind kind_;
   std::uint64_t position_ = 0;
   std::vector<BlockLocation> blocks_;  // checksum holds the payload's hash until finish()
 };
@@ -95,16 +96,15 @@ class ContainerReader {
   // Bytes read from the file so far, index and footer included.
   std::uint64_t bytesRead() const;
 
-  // For dbcheck: everything a reader does not need to look at. Each finding is handed to `report`.
-  // Order and gaplessness of the index:
+  // For dbcheck: what a reader of single blocks does not need to look at. Each returns the first thing wrong.
+  // The blocks follow each other without gap or overlap up to the index.
   Status checkIndex() const;
-  // Zero padding between blocks, index and footer:
+  // The bytes between blocks are zero.
   Status checkPadding() const;
-  // File id against the payloads (reads everything):
+  // The file id follows from the payloads (reads every block, whether its checksum holds or not).
   Status checkFileId() const;
 
  private:
-  struct Shared;
   ContainerReader() = default;
   Result<std::vector<std::byte>> readBytes(std::uint64_t offset, std::uint64_t length) const;
 
@@ -114,7 +114,7 @@ class ContainerReader {
   std::uint32_t block_count_ = 0;
   std::uint32_t optional_features_ = 0;
   std::uint64_t index_offset_ = 0;
-  std::uint64_t blocks_end_ = 0;
+  // What is learnt while reading; shared by all threads.
   struct Cache {
     std::mutex mutex;
     std::vector<std::vector<BlockLocation>> pages;

@@ -36,12 +36,15 @@ namespace deltaz {
   X(kRefChild, "REF_CHILD")                      \
   X(kRefRecord, "REF_RECORD")                    \
   X(kRefData, "REF_DATA")                        \
+  X(kRefMissing, "REF_MISSING")                  \
   X(kTileGrid, "TILE_GRID")                      \
   X(kTileHeightRange, "TILE_HEIGHT_RANGE")       \
   X(kTileVoids, "TILE_VOIDS")                    \
+  X(kTileSphere, "TILE_SPHERE")                  \
   X(kHgtDecode, "HGT_DECODE")                    \
   X(kHgtSubset, "HGT_SUBSET")                    \
   X(kHgtRing, "HGT_RING")                        \
+  X(kHgtBorder, "HGT_BORDER")                    \
   X(kSrcHeight, "SRC_HEIGHT")                    \
   X(kSrcVoid, "SRC_VOID")                        \
   X(kSrcExtent, "SRC_EXTENT")                    \

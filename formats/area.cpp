@@ -1,0 +1,372 @@
+#include "formats/area.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "formats/node_file.h"
+#include "formats/terrain_segment.h"
+
+namespace deltaz {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kFormatName = "deltaz area";
+constexpr std::string_view kHashLead = ",\n  \"hash\": \"";
+constexpr std::string_view kHashTail = "\"\n}\n";
+constexpr std::size_t kHashDigits = 32;
+// A global post index times the finest sensible spacing stays exactly representable in a double.
+constexpr std::int64_t kMaximumPostIndex = std::int64_t{1} << 40;
+constexpr std::int64_t kMaximumPostCount = std::int64_t{1} << 31;
+constexpr int kMaximumLevels = 32;
+
+std::span<const std::byte> asBytes(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+
+// ---- values to JSON
+
+Json toJson(const Rational& value) { return Json::array({value.numerator, value.denominator}); }
+
+Json toJson(const GridAxis& axis) {
+  Json json;
+  json["spacing_degrees"] = axis.spacing_degrees;
+  json["exact_spacing_arcseconds"] = axis.exact_spacing ? toJson(*axis.exact_spacing) : Json(nullptr);
+  json["phase"] = axis.phase;
+  json["first"] = axis.first;
+  json["count"] = axis.count;
+  return json;
+}
+
+Json toJson(const SourceDescription& source) {
+  Json json;
+  json["name"] = source.name;
+  json["content"] = toHex(source.content);
+  json["driver"] = source.driver;
+  json["geotransform"] = source.geotransform;
+  json["registration"] = source.point_registered ? "point" : "area";
+  json["data_type"] = source.data_type;
+  json["nodata"] = source.nodata ? Json(*source.nodata) : Json(nullptr);
+  json["unit"] = source.unit;
+  json["columns"] = source.columns;
+  json["rows"] = source.rows;
+  return json;
+}
+
+Json toJson(const GridHeader& grid) {
+  Json json;
+  json["kind"] = grid.kind;
+  json["crs"] = grid.crs_wkt;
+  json["horizontal_datum"] = grid.horizontal_datum;
+  json["vertical_datum"] = grid.vertical_datum;
+  json["ellipsoid"] = {{"semi_major_axis", grid.ellipsoid.semi_major_axis},
+                       {"inverse_flattening", grid.ellipsoid.inverse_flattening}};
+  json["unit"] = grid.unit;
+  json["quantum"] = toJson(grid.quantum);
+  json["longitude"] = toJson(grid.longitude);
+  json["latitude"] = toJson(grid.latitude);
+  json["leaf_cells"] = grid.leaf_cells;
+  json["levels"] = grid.level_count;
+  json["normal_exponent"] = grid.normal_exponent;
+  json["diagonal"] = grid.diagonal;
+  json["sources"] = Json::array();
+  for (const SourceDescription& source : grid.sources) json["sources"].push_back(toJson(source));
+  return json;
+}
+
+Json toJson(const FileReference& file) {
+  Json json;
+  json["role"] = file.role == FileRole::kNodes ? "nodes" : "terrain";
+  json["segment"] = file.segment;
+  json["name"] = file.name;
+  json["length"] = file.length;
+  json["id"] = toHex(file.id);
+  return json;
+}
+
+// ---- JSON to values
+
+// Reads the members of one object and remembers the first thing wrong.
+class Members {
+ public:
+  Members(const Json& json, std::string path, std::string& fault) : json_(json), path_(std::move(path)), fault_(fault) {
+    if (!json_.is_object()) fail("", "is not an object");
+  }
+
+  const Json* find(const char* name) {
+    if (!json_.is_object()) return nullptr;
+    const auto it = json_.find(name);
+    if (it == json_.end()) {
+      fail(name, "is missing");
+      return nullptr;
+    }
+    return &*it;
+  }
+  std::string text(const char* name) {
+    const Json* value = find(name);
+    if (value == nullptr) return {};
+    if (!value->is_string()) return fail(name, "is not text"), std::string();
+    return value->get<std::string>();
+  }
+  double number(const char* name, double low, double high) {
+    const Json* value = find(name);
+    if (value == nullptr) return low;
+    return numberOf(*value, name, low, high);
+  }
+  double numberOf(const Json& value, const char* name, double low, double high) {
+    if (!value.is_number()) return fail(name, "is not a number"), low;
+    const auto result = value.get<double>();
+    if (!(result >= low && result <= high)) return fail(name, "is out of range"), low;
+    return result;
+  }
+  std::int64_t integer(const char* name, std::int64_t low, std::int64_t high) {
+    const Json* value = find(name);
+    if (value == nullptr) return low;
+    return integerOf(*value, name, low, high);
+  }
+  std::int64_t integerOf(const Json& value, const char* name, std::int64_t low, std::int64_t high) {
+    if (!value.is_number_integer()) return fail(name, "is not an integer"), low;
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX)) {
+      return fail(name, "is out of range"), low;
+    }
+    const auto result = value.get<std::int64_t>();
+    if (result < low || result > high) return fail(name, "is out of range"), low;
+    return result;
+  }
+  const Json& array(const char* name, std::size_t least, std::size_t most) {
+    static const Json kEmpty = Json::array();
+    const Json* value = find(name);
+    if (value == nullptr) return kEmpty;
+    if (!value->is_array() || value->size() < least || value->size() > most) return fail(name, "is not an array of the right size"), kEmpty;
+    return *value;
+  }
+  Hash128 hash(const char* name) {
+    const std::optional<Hash128> value = hashFromHex(text(name));
+    if (!value) return fail(name, "is not 32 hexadecimal digits"), Hash128{};
+    return *value;
+  }
+  Rational rationalOf(const Json& value, const char* name) {
+    if (!value.is_array() || value.size() != 2) return fail(name, "is not a fraction"), Rational{};
+    const std::int64_t most = std::int64_t{1} << 53;
+    return {integerOf(value[0], name, 1, most), integerOf(value[1], name, 1, most)};
+  }
+  Members object(const char* name) {
+    static const Json kNothing;
+    const Json* value = find(name);
+    return {value == nullptr ? kNothing : *value, path_ + name + ".", fault_};
+  }
+  void fail(const std::string& name, const char* what) {
+    if (fault_.empty()) fault_ = fmt::format("member {}{} {}", path_, name, what);
+  }
+
+ private:
+  const Json& json_;
+  std::string path_;
+  std::string& fault_;
+};
+
+GridAxis readAxis(Members members, double full_circle) {
+  GridAxis axis;
+  axis.spacing_degrees = members.number("spacing_degrees", 1e-9, full_circle);
+  if (const Json* exact = members.find("exact_spacing_arcseconds"); exact != nullptr && !exact->is_null()) {
+    axis.exact_spacing = members.rationalOf(*exact, "exact_spacing_arcseconds");
+    const double degrees = axis.exact_spacing->value() / 3600.0;
+    if (!(std::abs(degrees - axis.spacing_degrees) <= 1e-9 * degrees)) {
+      members.fail("exact_spacing_arcseconds", "does not agree with spacing_degrees");
+    }
+  }
+  axis.phase = members.number("phase", 0, std::nextafter(1.0, 0.0));
+  axis.first = members.integer("first", -kMaximumPostIndex, kMaximumPostIndex);
+  axis.count = members.integer("count", 2, kMaximumPostCount);
+  return axis;
+}
+
+SourceDescription readSource(const Json& json, const std::string& path, std::string& fault) {
+  Members members(json, path, fault);
+  SourceDescription source;
+  source.name = members.text("name");
+  source.content = members.hash("content");
+  source.driver = members.text("driver");
+  const Json& geotransform = members.array("geotransform", 6, 6);
+  for (std::size_t i = 0; i < geotransform.size(); ++i) {
+    source.geotransform[i] = members.numberOf(geotransform[i], "geotransform", -1e12, 1e12);
+  }
+  const std::string registration = members.text("registration");
+  if (registration != "area" && registration != "point") members.fail("registration", "is neither area nor point");
+  source.point_registered = registration == "point";
+  source.data_type = members.text("data_type");
+  if (const Json* nodata = members.find("nodata"); nodata != nullptr && !nodata->is_null()) {
+    source.nodata = members.numberOf(*nodata, "nodata", -1e308, 1e308);
+  }
+  source.unit = members.text("unit");
+  source.columns = members.integer("columns", 1, kMaximumPostCount);
+  source.rows = members.integer("rows", 1, kMaximumPostCount);
+  return source;
+}
+
+GridHeader readGrid(const Json& json, const std::string& path, std::string& fault) {
+  Members members(json, path, fault);
+  GridHeader grid;
+  grid.kind = members.text("kind");
+  if (grid.kind != "geodetic") members.fail("kind", "is not geodetic");
+  grid.crs_wkt = members.text("crs");
+  grid.horizontal_datum = members.text("horizontal_datum");
+  grid.vertical_datum = members.text("vertical_datum");
+  Members ellipsoid = members.object("ellipsoid");
+  grid.ellipsoid.semi_major_axis = ellipsoid.number("semi_major_axis", 1, 1e8);
+  grid.ellipsoid.inverse_flattening = ellipsoid.number("inverse_flattening", 0, 1e12);
+  if (grid.ellipsoid.inverse_flattening != 0 && grid.ellipsoid.inverse_flattening <= 1) {
+    ellipsoid.fail("inverse_flattening", "is out of range");
+  }
+  grid.unit = members.text("unit");
+  if (grid.unit != "metre") members.fail("unit", "is not metre");
+  if (const Json* quantum = members.find("quantum"); quantum != nullptr) grid.quantum = members.rationalOf(*quantum, "quantum");
+  grid.longitude = readAxis(members.object("longitude"), 360);
+  grid.latitude = readAxis(members.object("latitude"), 180);
+  grid.leaf_cells = static_cast<int>(members.integer("leaf_cells", 8, kMaximumLeafCells));
+  if (!std::has_single_bit(static_cast<unsigned>(grid.leaf_cells))) members.fail("leaf_cells", "is not a power of two");
+  grid.level_count = static_cast<int>(members.integer("levels", 1, kMaximumLevels));
+  grid.normal_exponent = static_cast<int>(members.integer("normal_exponent", 2, 2));
+  grid.diagonal = members.text("diagonal");
+  if (grid.diagonal != "SW-NE") members.fail("diagonal", "is not SW-NE");
+  const Json& sources = members.array("sources", 0, 1 << 20);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    grid.sources.push_back(readSource(sources[i], fmt::format("{}sources[{}].", path, i), fault));
+  }
+  return grid;
+}
+
+FileReference readFile(const Json& json, const std::string& path, std::string& fault) {
+  Members members(json, path, fault);
+  FileReference file;
+  const std::string role = members.text("role");
+  if (role != "nodes" && role != "terrain") members.fail("role", "is neither nodes nor terrain");
+  file.role = role == "nodes" ? FileRole::kNodes : FileRole::kTerrain;
+  file.segment = static_cast<std::uint32_t>(members.integer("segment", 0, 1 << 20));
+  file.name = members.text("name");
+  // A name leads nowhere but into the database's own folder.
+  if (file.name.empty() || file.name[0] == '.' || file.name.find('/') != std::string::npos ||
+      file.name.find('\0') != std::string::npos || file.name == kAreaFileName || file.name == kLockFileName) {
+    members.fail("name", "is not a plain file name");
+  }
+  file.length = static_cast<std::uint64_t>(members.integer("length", 0, INT64_MAX));
+  file.id = members.hash("id");
+  return file;
+}
+
+AreaHeader readArea(const Json& json, std::string& fault) {
+  Members members(json, "", fault);
+  AreaHeader area;
+  area.generation = static_cast<std::uint64_t>(members.integer("generation", 1, INT64_MAX));
+  Members bounds = members.object("bounds");
+  area.west = bounds.number("west", -180, 180);
+  area.south = bounds.number("south", -90.5, 90.5);
+  area.east = bounds.number("east", -180, 541);
+  area.north = bounds.number("north", -90.5, 90.5);
+  if (!(area.east > area.west) || !(area.north > area.south)) bounds.fail("", "are empty");
+  const Json& centroid = members.array("centroid", 3, 3);
+  for (std::size_t i = 0; i < centroid.size(); ++i) {
+    area.centroid[i] = members.integerOf(centroid[i], "centroid", -(std::int64_t{1} << 40), std::int64_t{1} << 40);
+  }
+  Members heights = members.object("heights");
+  area.lowest_height = heights.number("lowest", -1e9, 1e9);
+  area.highest_height = heights.number("highest", -1e9, 1e9);
+  if (area.highest_height < area.lowest_height) heights.fail("", "are not in order");
+  area.sea_drop = members.number("sea_drop", 0, 1e8);
+  Members nodes = members.object("nodes");
+  area.node_count = static_cast<std::uint32_t>(nodes.integer("count", 1, UINT32_MAX));
+  area.nodes_per_page = static_cast<std::uint32_t>(nodes.integer("per_page", kNodesPerPage, kNodesPerPage));
+  const Json& grids = members.array("grids", 1, 1 << 16);
+  for (std::size_t i = 0; i < grids.size(); ++i) area.grids.push_back(readGrid(grids[i], fmt::format("grids[{}].", i), fault));
+  const Json& files = members.array("files", 1, 1 << 20);
+  for (std::size_t i = 0; i < files.size(); ++i) area.files.push_back(readFile(files[i], fmt::format("files[{}].", i), fault));
+  Members provenance = members.object("provenance");
+  area.tool_version = provenance.text("tool");
+  if (const Json* options = provenance.find("options"); options != nullptr) {
+    if (!options->is_object()) {
+      provenance.fail("options", "is not an object");
+    } else {
+      for (const auto& [name, value] : options->items()) {
+        if (!value.is_string()) provenance.fail("options." + name, "is not text");
+        area.options.emplace_back(name, value.is_string() ? value.get<std::string>() : std::string());
+      }
+    }
+  }
+  return area;
+}
+
+}  // namespace
+
+std::string serializeArea(const AreaHeader& area) {
+  Json json;
+  json["format"] = kFormatName;
+  json["version"] = kAreaVersion;
+  json["required_features"] = Json::array();
+  json["optional_features"] = Json::array();
+  json["generation"] = area.generation;
+  json["bounds"] = {{"west", area.west}, {"south", area.south}, {"east", area.east}, {"north", area.north}};
+  json["centroid"] = area.centroid;
+  json["heights"] = {{"lowest", area.lowest_height}, {"highest", area.highest_height}};
+  json["sea_drop"] = area.sea_drop;
+  json["nodes"] = {{"count", area.node_count}, {"per_page", area.nodes_per_page}};
+  json["grids"] = Json::array();
+  for (const GridHeader& grid : area.grids) json["grids"].push_back(toJson(grid));
+  json["files"] = Json::array();
+  for (const FileReference& file : area.files) json["files"].push_back(toJson(file));
+  Json options = Json::object();
+  for (const auto& [name, value] : area.options) options[name] = value;
+  json["provenance"] = {{"tool", area.tool_version}, {"options", options}};
+  // A file name that is not UTF-8 must not make a database unreadable: its odd bytes become replacement characters.
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - 2);  // without the closing "\n}"
+  const std::string hash = toHex(hash128(asBytes(text)));
+  return text.append(kHashLead).append(hash).append(kHashTail);
+}
+
+Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
+  const std::size_t tail = kHashLead.size() + kHashDigits + kHashTail.size();
+  const bool shaped = text.size() > tail && text.ends_with(kHashTail) &&
+                      text.substr(text.size() - tail, kHashLead.size()) == kHashLead;
+  if (!shaped) {
+    if (text.find(kFormatName) == std::string_view::npos) {
+      return invalidError(IssueCode::kManSyntax, where, "this is not the header of a deltaz database");
+    }
+    return invalidError(IssueCode::kManHash, where, "the file does not end in its hash", "it was cut short or edited by hand",
+                        "Restore it, or rebuild the database");
+  }
+  const std::string_view body = text.substr(0, text.size() - tail);
+  if (toHex(hash128(asBytes(body))) != text.substr(body.size() + kHashLead.size(), kHashDigits)) {
+    return invalidError(IssueCode::kManHash, where, "the contents do not match the hash at their end",
+                        "the file was damaged or edited by hand", "Restore it, or rebuild the database");
+  }
+  const Json json = Json::parse(std::string(body) + "\n}", nullptr, false);
+  if (json.is_discarded() || !json.is_object()) return invalidError(IssueCode::kManSyntax, where, "this is not JSON");
+
+  std::string fault;
+  Members members(json, "", fault);
+  if (members.text("format") != kFormatName) return invalidError(IssueCode::kManSyntax, where, "this is not the header of a deltaz database");
+  const std::int64_t version = members.integer("version", 1, INT64_MAX);
+  if (version > kAreaVersion) {
+    return newerFormatError(IssueCode::kHdrVersionNewer, where,
+                            fmt::format("the database has version {}, newer than this program knows ({})", version, kAreaVersion),
+                            "Use a newer deltaz");
+  }
+  if (const Json& required = members.array("required_features", 0, 1000); !required.empty()) {
+    return newerFormatError(IssueCode::kHdrFeatureUnknown, where,
+                            fmt::format("the database needs features this program does not have: {}",
+                                        required.dump(-1, ' ', true, Json::error_handler_t::replace)),
+                            "Use a newer deltaz");
+  }
+  const bool may_hold_more = !members.array("optional_features", 0, 1000).empty();
+  AreaHeader area = readArea(json, fault);
+  if (!fault.empty()) return invalidError(IssueCode::kManField, where, fault);
+  if (!may_hold_more && serializeArea(area) != text) {
+    return invalidError(IssueCode::kManField, where, "the file is not in canonical form", "it has members this version does not know, or in another order");
+  }
+  return area;
+}
+
+}  // namespace deltaz

@@ -1,0 +1,213 @@
+#include "libdb/access/database.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace deltaz {
+
+namespace {
+
+double errorInMetres(std::uint32_t units) {
+  return units == kUnknownError ? std::numeric_limits<double>::infinity() : static_cast<double>(units) * kErrorUnit;
+}
+
+Node makeNode(std::uint32_t number, const NodeRecord& record, const std::array<std::int64_t, 3>& parent_centroid) {
+  Node node;
+  node.number = number;
+  node.record = record;
+  for (std::size_t i = 0; i < 3; ++i) node.centroid_units[i] = parent_centroid[i] + record.centroid_offset[i];
+  node.centroid = {static_cast<double>(node.centroid_units[0]) * kCentroidUnit,
+                   static_cast<double>(node.centroid_units[1]) * kCentroidUnit,
+                   static_cast<double>(node.centroid_units[2]) * kCentroidUnit};
+  return node;
+}
+
+// Opens a file named in area.json and compares it with what stands there.
+Result<std::unique_ptr<ContainerReader>> openReferenced(const FileSystem& files, const std::string& folder,
+                                                        const FileReference& reference) {
+  const std::string path = joinPath(folder, reference.name);
+  DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
+  if (type == PathType::kAbsent) {
+    Error error = accessError(path, "a file of the database is missing", {}, "Restore it or rebuild the database");
+    error.kind = ErrorKind::kInvalid;
+    error.code = IssueCode::kIoMissingFile;
+    return error;
+  }
+  const ContentKind kind = reference.role == FileRole::kNodes ? ContentKind::kNodes : ContentKind::kTerrain;
+  DELTAZ_TRY_ASSIGN(ContainerReader reader, ContainerReader::open(files, path, kind));
+  if (reader.identity().length != reference.length || reader.identity().id != reference.id) {
+    return invalidError(IssueCode::kManFileMismatch, path, "the file is not the one area.json names",
+                        "it belongs to another database or another state of this one", "Restore it or rebuild the database");
+  }
+  return std::make_unique<ContainerReader>(std::move(reader));
+}
+
+}  // namespace
+
+double Node::geometricError() const { return errorInMetres(record.geometric_error); }
+double Node::coverageError() const { return errorInMetres(record.coverage_error); }
+
+Result<Database> Database::open(const FileSystem& files, const std::string& path) {
+  DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
+  if (type == PathType::kAbsent) return accessError(path, "cannot open the database", "there is no such folder");
+  if (type != PathType::kDirectory) {
+    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database", "a database is a folder");
+  }
+  const std::string area_path = joinPath(path, std::string(kAreaFileName));
+  DELTAZ_TRY_ASSIGN(const PathType area_type, files.typeOf(area_path));
+  if (area_type == PathType::kAbsent) {
+    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database", "there is no area.json in it");
+  }
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> text, readWholeFile(files, area_path, kMaximumAreaBytes));
+  Database database;
+  database.path_ = path;
+  database.area_bytes_ = text.size();
+  std::string characters(text.size(), '\0');
+  std::transform(text.begin(), text.end(), characters.begin(), [](std::byte b) { return static_cast<char>(b); });
+  DELTAZ_TRY_ASSIGN(database.area_, parseArea(characters, area_path));
+  for (const GridHeader& grid : database.area_.grids) database.grids_.emplace_back(grid);
+
+  for (const FileReference& reference : database.area_.files) {
+    DELTAZ_TRY_ASSIGN(std::unique_ptr<ContainerReader> reader, openReferenced(files, path, reference));
+    if (reference.role == FileRole::kNodes) {
+      if (database.nodes_) return invalidError(IssueCode::kManField, area_path, "two node files are listed");
+      database.nodes_ = std::move(reader);
+      continue;
+    }
+    if (reference.segment != database.segments_.size()) {
+      return invalidError(IssueCode::kManField, area_path, "the terrain segments are not numbered in order");
+    }
+    database.segments_.push_back(std::move(reader));
+  }
+  if (!database.nodes_) return invalidError(IssueCode::kManField, area_path, "no node file is listed");
+  const std::uint32_t pages = (database.area_.node_count + kNodesPerPage - 1) / kNodesPerPage;
+  if (database.nodes_->blockCount() != pages) {
+    return invalidError(IssueCode::kManField, area_path,
+                        fmt::format("{} records need {} pages, the node file has {}", database.area_.node_count, pages,
+                                    database.nodes_->blockCount()));
+  }
+  database.page_cache_ = std::make_unique<PageCache>();
+  database.page_cache_->pages.resize(pages);
+  return database;
+}
+
+const ContainerReader* Database::terrainSegment(std::uint32_t segment) const {
+  return segment < segments_.size() ? segments_[segment].get() : nullptr;
+}
+
+Result<NodeRecord> Database::record(std::uint32_t number) const {
+  if (number == 0 || number > area_.node_count) {
+    return invalidError(IssueCode::kRefRange, nodes_->path(), fmt::format("there is no record {}; the last is {}", number, area_.node_count));
+  }
+  const std::uint32_t page_number = (number - 1) / kNodesPerPage;
+  const std::size_t slot = (number - 1) % kNodesPerPage;
+  {
+    const std::lock_guard guard(page_cache_->mutex);
+    if (const auto& page = page_cache_->pages[page_number]) return (*page)[slot];
+  }
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, nodes_->read(page_number, BlockType::kNodePage));
+  DELTAZ_TRY_ASSIGN(std::vector<NodeRecord> records, decodeNodePage(bytes, fmt::format("{}, block {}", nodes_->path(), page_number)));
+  const std::size_t expected = std::min<std::size_t>(kNodesPerPage, area_.node_count - page_number * kNodesPerPage);
+  if (records.size() != expected) {
+    return invalidError(IssueCode::kRefRecord, nodes_->path(),
+                        fmt::format("page {} has {} records, not {}", page_number, records.size(), expected));
+  }
+  const NodeRecord result = records[slot];
+  const std::lock_guard guard(page_cache_->mutex);
+  page_cache_->pages[page_number] = std::make_shared<const std::vector<NodeRecord>>(std::move(records));
+  return result;
+}
+
+Result<Node> Database::root() const {
+  DELTAZ_TRY_ASSIGN(const NodeRecord record_of_root, record(kRootRecord));
+  if (record_of_root.type != NodeType::kCluster) {
+    return invalidError(IssueCode::kRefRecord, nodes_->path(), "record 1 is not the area's cluster node");
+  }
+  return makeNode(kRootRecord, record_of_root, area_.centroid);
+}
+
+Result<std::vector<Node>> Database::children(const Node& parent) const {
+  // Clusters may have any number of children up to the number of grids; quadtree nodes at most four.
+  const std::size_t most = parent.record.type == NodeType::kCluster ? std::max<std::size_t>(4, area_.grids.size()) : 4;
+  std::vector<Node> nodes;
+  for (std::uint32_t number = parent.record.first_child; number != 0;) {
+    // Children always stand behind their parent and in order, so a damaged file cannot lead in circles.
+    const std::uint32_t before = nodes.empty() ? parent.number : nodes.back().number;
+    if (number <= before || nodes.size() == most) {
+      return invalidError(IssueCode::kRefCycle, nodes_->path(), fmt::format("the children of record {} do not end", parent.number));
+    }
+    DELTAZ_TRY_ASSIGN(const NodeRecord child, record(number));
+    if (child.grid >= area_.grids.size() ||
+        (child.type == NodeType::kTerrain && child.level >= area_.grids[child.grid].level_count)) {
+      return invalidError(IssueCode::kRefRecord, nodes_->path(), fmt::format("record {} names a grid or level that is not there", number));
+    }
+    nodes.push_back(makeNode(number, child, parent.centroid_units));
+    number = child.sibling;
+  }
+  return nodes;
+}
+
+Result<TerrainBlock> Database::terrainBlock(const NodeRecord& record) const {
+  const ContainerReader* segment = terrainSegment(record.segment);
+  if (segment == nullptr || record.type != NodeType::kTerrain || record.grid >= area_.grids.size()) {
+    return invalidError(IssueCode::kRefData, nodes_->path(), fmt::format("a node names terrain segment {}, which is not there", record.segment));
+  }
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, segment->read(record.block, BlockType::kTerrainNode));
+  return decodeTerrainBlock(bytes, static_cast<std::uint32_t>(area_.grids[record.grid].leaf_cells),
+                            fmt::format("{}, block {}", segment->path(), record.block));
+}
+
+Result<TerrainTile> Database::terrain(const Node& node) const {
+  DELTAZ_TRY_ASSIGN(TerrainBlock block, terrainBlock(node.record));
+  const GridGeometry& geometry = grids_[node.record.grid];
+  TerrainTile tile;
+  tile.grid = node.record.grid;
+  tile.level = node.record.level;
+  tile.x = node.record.x;
+  tile.y = node.record.y;
+  tile.columns = block.columns;
+  tile.rows = block.rows;
+  const std::int64_t leaf = geometry.header().leaf_cells;
+  tile.first_column = tile.x * leaf + block.first_column;
+  tile.first_row = tile.y * leaf + block.first_row;
+  // The block must be this node's: its posts are those of the area at the node's place.
+  const PostRange columns = geometry.nodePosts(geometry.columnsAt(tile.level), tile.x);
+  const PostRange rows = geometry.nodePosts(geometry.rowsAt(tile.level), tile.y);
+  if (tile.columns != columns.size() || tile.rows != rows.size() ||
+      (tile.columns > 0 && tile.first_column != columns.begin) || (tile.rows > 0 && tile.first_row != rows.begin)) {
+    return invalidError(IssueCode::kTileGrid, terrainSegment(node.record.segment)->path(),
+                        fmt::format("block {} does not hold the posts of record {}", node.record.block, node.number));
+  }
+  tile.heights = std::move(block.heights);
+  tile.valid = std::move(block.valid);
+  return tile;
+}
+
+std::uint64_t Database::bytesRead() const {
+  std::uint64_t bytes = area_bytes_ + nodes_->bytesRead();
+  for (const auto& segment : segments_) bytes += segment->bytesRead();
+  return bytes;
+}
+
+Result<std::vector<Node>> nodesOfLevel(const Database& database, int grid, int level) {
+  DELTAZ_TRY_ASSIGN(const Node root, database.root());
+  DELTAZ_TRY_ASSIGN(const std::vector<Node> clusters, database.children(root));
+  std::vector<Node> current;
+  for (const Node& cluster : clusters) {
+    if (cluster.record.grid != grid) continue;
+    DELTAZ_TRY_ASSIGN(current, database.children(cluster));
+  }
+  while (!current.empty() && current.front().record.level > level) {
+    std::vector<Node> next;
+    for (const Node& node : current) {
+      DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database.children(node));
+      next.insert(next.end(), children.begin(), children.end());
+    }
+    current = std::move(next);
+  }
+  return current;
+}
+
+}  // namespace deltaz
