@@ -1,0 +1,22 @@
+// GDAL's edge. While a session lives, GDAL's messages of this thread are collected instead of printed.
+#pragma once
+
+#include <string>
+
+namespace deltaz {
+
+class GdalSession {
+ public:
+  GdalSession();
+  ~GdalSession();
+  GdalSession(const GdalSession&) = delete;
+  GdalSession& operator=(const GdalSession&) = delete;
+
+  // The last failure GDAL reported in this session, or "no reason given".
+  std::string lastFailure() const;
+
+ private:
+  std::string failure_;
+};
+
+}  // namespace deltaz
