@@ -1,0 +1,101 @@
+#include "libdb/access/ground_query.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltaz {
+
+namespace {
+
+// Where a coordinate falls on an axis: the post at or before it and the fraction of a cell beyond that post.
+struct CellPosition {
+  std::int64_t post = 0;
+  double fraction = 0;
+};
+
+std::optional<CellPosition> locate(const GridAxis& axis, double origin, double degrees) {
+  const double steps = (degrees - origin) / axis.spacing_degrees - axis.phase;
+  // A position written with fifteen digits may miss the outermost post by a rounding error.
+  constexpr double kRoundingPosts = 1e-6;
+  const double first = static_cast<double>(axis.first),
+               last = static_cast<double>(axis.first + axis.count - 1);
+  if (!(steps >= first - kRoundingPosts && steps <= last + kRoundingPosts)) return std::nullopt;
+  CellPosition position;
+  position.post =
+      std::clamp(static_cast<std::int64_t>(std::floor(steps)), axis.first, axis.first + axis.count - 2);
+  position.fraction = std::clamp(steps - static_cast<double>(position.post), 0.0, 1.0);
+  return position;
+}
+
+// The leaf that holds a cell, found from the grid's cluster node down; nothing where the tree ends before.
+Result<std::optional<Node>> leafAt(const Database& database, const Node& cluster, std::int64_t x,
+                                   std::int64_t y) {
+  Node node = cluster;
+  while (node.record.type == NodeType::kCluster || node.record.level > 0) {
+    DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database.children(node));
+    const auto holds = [x, y](const Node& child) {
+      return child.record.type == NodeType::kTerrain && child.record.x == x >> child.record.level &&
+             child.record.y == y >> child.record.level;
+    };
+    const auto child = std::find_if(children.begin(), children.end(), holds);
+    if (child == children.end()) return std::optional<Node>{};
+    node = *child;
+  }
+  return std::optional<Node>{node};
+}
+
+// Height at which the ellipsoid normal over (row, column) meets the plane through three points.
+double heightOnFacet(const Vector3& a, const Vector3& b, const Vector3& c, const RowConstants& row,
+                     const ColumnConstants& column, double linear_height) {
+  const Vector3 normal = cross(b - a, c - a);
+  const double slope = dot(normal, upVector(row, column));
+  // A facet at a pole, where a row is one point, has no plane.
+  if (std::abs(slope) <= 1e-12 * length(normal) || length(normal) == 0) return linear_height;
+  return dot(normal, a - earthCentred(row, column, 0)) / slope;
+}
+
+std::optional<double> heightInTile(const TerrainTile& tile, const GridGeometry& geometry, CellPosition x,
+                                   CellPosition y, double latitude, double longitude) {
+  const int i = static_cast<int>(x.post - tile.first_column), j = static_cast<int>(y.post - tile.first_row);
+  if (i < 0 || j < 0 || i + 1 >= tile.columns || j + 1 >= tile.rows) return std::nullopt;
+  const bool bottom = x.fraction >= y.fraction;
+  if (!(bottom ? tile.bottomFaceValid(i, j) : tile.topFaceValid(i, j))) return std::nullopt;
+  const auto metres = [&](int di, int dj) { return geometry.metres(tile.height(i + di, j + dj)); };
+  const auto corner = [&](int di, int dj) {
+    return earthCentred(rowConstants(geometry.header().ellipsoid, geometry.latitude(y.post + dj)),
+                        columnConstants(geometry.longitude(x.post + di)), metres(di, dj));
+  };
+  const double linear = bottom ? metres(0, 0) + x.fraction * (metres(1, 0) - metres(0, 0)) +
+                                     y.fraction * (metres(1, 1) - metres(1, 0))
+                               : metres(0, 0) + y.fraction * (metres(0, 1) - metres(0, 0)) +
+                                     x.fraction * (metres(1, 1) - metres(0, 1));
+  return heightOnFacet(
+      corner(0, 0), bottom ? corner(1, 0) : corner(1, 1), bottom ? corner(1, 1) : corner(0, 1),
+      rowConstants(geometry.header().ellipsoid, latitude), columnConstants(longitude), linear);
+}
+
+}  // namespace
+
+Result<std::optional<double>> groundHeight(const Database& database, double latitude, double longitude) {
+  DELTAZ_TRY_ASSIGN(const Node root, database.root());
+  DELTAZ_TRY_ASSIGN(const std::vector<Node> clusters, database.children(root));
+  for (const Node& cluster : clusters) {
+    const GridGeometry& geometry = database.grid(cluster.record.grid);
+    const GridHeader& grid = geometry.header();
+    const auto y = locate(grid.latitude, -90.0, latitude);
+    if (!y) continue;
+    for (const double turn : {0.0, 360.0, -360.0}) {
+      const auto x = locate(grid.longitude, -180.0, longitude + turn);
+      if (!x) continue;
+      DELTAZ_TRY_ASSIGN(const std::optional<Node> leaf,
+                        leafAt(database, cluster, floorDivide(x->post, grid.leaf_cells),
+                               floorDivide(y->post, grid.leaf_cells)));
+      if (!leaf || leaf->record.isEmpty()) continue;
+      DELTAZ_TRY_ASSIGN(const TerrainTile tile, database.terrain(*leaf));
+      if (const auto height = heightInTile(tile, geometry, *x, *y, latitude, longitude)) return height;
+    }
+  }
+  return std::optional<double>{};
+}
+
+}  // namespace deltaz
