@@ -1,9 +1,9 @@
 // Proves a database right or says exactly what is wrong with it. The library behind dbcheck.
 //
 // Levels, each including the ones before it:
-//   structure  area.json, file lengths and identities, headers, footers, block index, the tree of node records
-//   checksum   every block against its checksum, file identities against contents, padding
-//   decode     every node's terrain: it decodes, agrees with its record, its parent's posts and its neighbours' ring
+//   structure  area.json, file lengths and identities, headers, footers, block index, the tree of node
+//   records checksum   every block against its checksum, file identities against contents, padding decode
+//   every node's terrain: it decodes, agrees with its record, its parent's posts and its neighbours' ring
 // `against` adds a comparison with the source, post for post.
 //
 // A damaged database never makes a check crash or stop early without saying so (Report::complete).
@@ -27,10 +27,10 @@ enum class Severity : std::uint8_t { kInformation, kWarning, kError };
 
 // Where an issue is. Members that do not apply are empty.
 struct IssueLocation {
-  std::string file;                         // name in the database folder
+  std::string file;  // name in the database folder
   std::optional<std::uint32_t> block;
-  std::optional<std::uint64_t> offset;      // bytes
-  std::optional<std::uint32_t> node;        // record number
+  std::optional<std::uint64_t> offset;  // bytes
+  std::optional<std::uint32_t> node;    // record number
   std::optional<int> level;
   std::optional<std::int32_t> x, y;
   std::optional<double> longitude, latitude;  // degrees
@@ -41,7 +41,7 @@ struct Issue {
   Severity severity = Severity::kError;
   std::string message;
   IssueLocation where;
-  std::optional<double> magnitude;          // how bad, in the unit the message names (metres for heights)
+  std::optional<double> magnitude;  // how bad, in the unit the message names (metres for heights)
 };
 
 // Issues of one code: the count is exact, the first kKeptIssues are kept, and the worst by magnitude.
@@ -66,7 +66,9 @@ struct Report {
   bool complete = true;              // every check of the level ran to its end
   std::vector<std::string> skipped;  // what did not run, and why
   std::uint64_t nodes_checked = 0, blocks_checked = 0, bytes_checked = 0, posts_compared = 0;
-  // Set when the database could not be opened at all or is newer than this version; the issue stands in groups too.
+  // Set when the database could not be opened or read, is newer than this version, or the check itself
+  // failed. The issue stands in groups too, except for the check's own failure (kInternal), which is no
+  // property of the database.
   std::optional<Error> fatal;
 
   void add(Issue issue);

@@ -1,0 +1,43 @@
+#include "libdb/check/check.h"
+
+#include <exception>
+#include <oneapi/tbb/task_arena.h>
+#include <utility>
+
+#include "libdb/check/check_context.h"
+#include "libdb/check/report_detail.h"
+
+namespace deltaz {
+namespace {
+
+void runRules(CheckContext& context) {
+  if (!openDatabaseFiles(context)) return;
+  checkFolder(context);
+  checkTree(context);
+  if (context.options.level >= CheckLevel::kChecksum) checkChecksums(context);
+  if (context.options.level >= CheckLevel::kDecode) checkTerrain(context);
+  if (context.options.against != nullptr) checkAgainstSource(context);
+}
+
+}  // namespace
+
+Report checkDatabase(const FileSystem& files, const std::string& path, const CheckOptions& options) {
+  CheckContext context(files, path, options);
+  // A rule that fails has proved nothing: the report says so and is never taken for a clean one.
+  const auto failed = [&](const char* what) {
+    context.report.complete = false;
+    context.report.fatal = internalError(path, std::string("the check failed: ") + what);
+  };
+  try {
+    const int threads = options.threads > 0 ? options.threads : oneapi::tbb::task_arena::automatic;
+    oneapi::tbb::task_arena arena(threads);
+    arena.execute([&] { runRules(context); });
+  } catch (const std::exception& exception) {
+    failed(exception.what());
+  } catch (...) {
+    failed("unknown exception");
+  }
+  return std::move(context.report);
+}
+
+}  // namespace deltaz

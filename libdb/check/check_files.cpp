@@ -1,0 +1,149 @@
+// area.json, the files it lists, and what else lies in the folder.
+#include <fmt/format.h>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "libdb/check/check_context.h"
+#include "libdb/check/report_detail.h"
+
+namespace deltaz {
+namespace {
+
+IssueLocation inFile(const std::string& name) {
+  IssueLocation where;
+  where.file = name;
+  return where;
+}
+
+ContentKind contentKind(FileRole role) {
+  return role == FileRole::kNodes ? ContentKind::kNodes : ContentKind::kTerrain;
+}
+
+// Nothing can be checked: the one finding is the error that says why.
+bool refuse(CheckContext& context, const Error& error, const std::string& file) {
+  addError(context.report, error, inFile(file));
+  context.report.fatal = error;
+  addSkipped(context.report, "everything behind area.json, which could not be read");
+  return false;
+}
+
+// True if area.json could be read.
+bool readArea(CheckContext& context) {
+  const std::string area_path = joinPath(context.path, std::string(kAreaFileName));
+  const auto folder = context.files.typeOf(context.path);
+  if (!folder.ok()) return refuse(context, folder.error(), "");
+  if (folder.value() == PathType::kAbsent) {
+    Error error = accessError(context.path, "there is no such database");
+    error.code = IssueCode::kIoMissingFile;
+    return refuse(context, error, "");
+  }
+  const auto type = context.files.typeOf(area_path);
+  if (!type.ok()) return refuse(context, type.error(), std::string(kAreaFileName));
+  if (folder.value() != PathType::kDirectory || type.value() == PathType::kAbsent) {
+    return refuse(context,
+                  invalidError(IssueCode::kIoMissingFile, context.path, "this is not a deltaz database",
+                               "it is not a folder with an area.json in it"),
+                  std::string(kAreaFileName));
+  }
+  auto bytes = readWholeFile(context.files, area_path, kMaximumAreaBytes);
+  if (!bytes.ok()) return refuse(context, bytes.error(), std::string(kAreaFileName));
+  std::string text;
+  text.reserve(bytes.value().size());
+  for (const std::byte byte : bytes.value()) text.push_back(static_cast<char>(byte));
+  context.report.bytes_checked += text.size();
+  auto area = parseArea(text, area_path);
+  if (!area.ok()) return refuse(context, area.error(), std::string(kAreaFileName));
+  context.area = std::move(area).value();
+  return true;
+}
+
+void openFile(CheckContext& context, CheckedFile& file) {
+  const FileReference& reference = file.reference;
+  const std::string path = joinPath(context.path, reference.name);
+  const auto type = context.files.typeOf(path);
+  if (!type.ok()) return addError(context.report, type.error(), inFile(reference.name));
+  if (type.value() == PathType::kAbsent) {
+    context.report.add(makeIssue(IssueCode::kIoMissingFile, "area.json lists this file, but it is not there",
+                                 inFile(reference.name)));
+    return;
+  }
+  auto container = ContainerReader::open(context.files, path, contentKind(reference.role));
+  if (!container.ok()) return addError(context.report, container.error(), inFile(reference.name));
+  const FileIdentity& identity = container.value().identity();
+  if (identity.length != reference.length || identity.id != reference.id) {
+    context.report.add(
+        makeIssue(IssueCode::kManFileMismatch,
+                  fmt::format("area.json lists {} bytes with identity {}, the file has {} with {}",
+                              reference.length, toHex(reference.id), identity.length, toHex(identity.id)),
+                  inFile(reference.name)));
+  }
+  if (const Status index = container.value().checkIndex(); !index.ok()) {
+    addError(context.report, index.error(), inFile(reference.name));
+    return;
+  }
+  file.damaged_blocks.assign(container.value().blockCount(), 0);
+  file.container = std::move(container).value();
+}
+
+// What readers rely on in the list of files as a whole: one node file of the right number of pages, and
+// terrain segments numbered from 0 on.
+void checkFileList(CheckContext& context) {
+  const auto complain = [&](std::string message) {
+    context.report.add(
+        makeIssue(IssueCode::kManField, std::move(message), inFile(std::string(kAreaFileName))));
+  };
+  std::size_t node_files = 0;
+  std::uint32_t next_segment = 0;
+  for (const CheckedFile& file : context.listed) {
+    if (file.reference.role == FileRole::kNodes) {
+      ++node_files;
+    } else if (file.reference.segment != next_segment++) {
+      complain(fmt::format("terrain segment {} is not numbered in order", file.reference.segment));
+    }
+  }
+  if (node_files != 1) complain(fmt::format("{} node files are listed, not one", node_files));
+  if (context.nodes == nullptr) return;
+  const std::uint32_t pages = (context.area.node_count - 1) / kNodesPerPage + 1;
+  const std::uint32_t blocks = context.nodes->container->blockCount();
+  if (blocks != pages) {
+    complain(fmt::format("{} node records need {} pages, the node file has {}", context.area.node_count,
+                         pages, blocks));
+    // Without a count to believe there are no records to walk.
+    context.nodes = nullptr;
+  }
+}
+
+}  // namespace
+
+bool openDatabaseFiles(CheckContext& context) {
+  if (!readArea(context)) return false;
+  for (const GridHeader& grid : context.area.grids) context.grids.emplace_back(grid);
+  context.listed.resize(context.area.files.size());
+  for (std::size_t i = 0; i < context.listed.size(); ++i) {
+    CheckedFile& file = context.listed[i];
+    file.reference = context.area.files[i];
+    openFile(context, file);
+    if (file.reference.role == FileRole::kTerrain) {
+      context.segments.emplace(file.reference.segment, &file);
+    } else if (file.container) {
+      context.nodes = &file;
+    }
+  }
+  checkFileList(context);
+  return true;
+}
+
+void checkFolder(CheckContext& context) {
+  const auto names = context.files.list(context.path);
+  if (!names.ok()) return addError(context.report, names.error());
+  std::set<std::string_view> known = {kAreaFileName, kLockFileName};
+  for (const CheckedFile& file : context.listed) known.insert(file.reference.name);
+  for (const std::string& name : names.value()) {
+    if (known.contains(name)) continue;
+    context.report.add(makeIssue(IssueCode::kIoUnreferencedFile,
+                                 "area.json does not list this file; readers ignore it", inFile(name)));
+  }
+}
+
+}  // namespace deltaz
