@@ -1,8 +1,8 @@
 // The camera and the view space it defines.
 //
-// View space (report 4.1): U forward, V right, W down, metres, right-handed; V and W include the field-of-view scaling
-// in pixels, so that a point projects to column j = centre_j + V/U and row i = centre_i + W/U. Pixel centres lie at
-// integer (i, j); (1, 0, 0) is the picture's centre, ((height-1)/2, (width-1)/2).
+// View space (report 4.1): U forward, V right, W down, metres, right-handed; V and W include the
+// field-of-view scaling in pixels, so that a point projects to column j = centre_j + V/U and row i = centre_i
+// + W/U. Pixel centres lie at integer (i, j); (1, 0, 0) is the picture's centre, ((height-1)/2, (width-1)/2).
 // Thread-safety: plain values.
 #pragma once
 
@@ -13,11 +13,11 @@
 namespace deltaz {
 
 struct Camera {
-  GeodeticPoint eye;             // degrees, metres above the database's datum
-  double heading = 0;            // degrees clockwise from north
-  double pitch = 0;              // degrees, positive up
-  double roll = 0;               // degrees, positive tilts the horizon's right side up (right wing down)
-  double field_of_view = 60;     // horizontal, degrees, 0 < fov < 180
+  GeodeticPoint eye;               // degrees, metres above the database's datum
+  double heading = 0;              // degrees clockwise from north
+  double pitch = 0;                // degrees, positive up
+  double roll = 0;                 // degrees, positive tilts the horizon's right side up (right wing down)
+  double field_of_view = 60;       // horizontal, degrees, 0 < fov < 180
   int width = 1280, height = 720;  // pixels
 };
 
@@ -42,8 +42,8 @@ struct ViewTransform {
 
 ViewTransform makeViewTransform(const Camera& camera, const EllipsoidShape& ellipsoid);
 
-// The view used when the user gives none: the whole area from the south, looking down at it, every corner of its bounds in the
-// picture with a small margin.
+// The view used when the user gives none: the whole area from the south, looking down at it, every corner of
+// its bounds in the picture with a small margin.
 Camera wholeAreaCamera(const AreaHeader& area, int width, int height, double field_of_view);
 
 }  // namespace deltaz

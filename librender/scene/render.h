@@ -1,9 +1,9 @@
 // The one interface of the engines: a database and a view in, a picture and its statistics out.
-// Three engines are planned behind it; each validates the others. `fast` is the product, `reference` the judge (double
-// precision, every full-resolution triangle).
+// Three engines are planned behind it; each validates the others. `fast` is the product, `reference` the
+// judge (double precision, every full-resolution triangle).
 //
-// Guarantees: the same picture for any thread count. Errors: whatever reading the database reports; kUsage for views
-// that make no sense. Thread-safety: several renders of one database may run at once.
+// Guarantees: the same picture for any thread count. Errors: whatever reading the database reports; kUsage
+// for views that make no sense. Thread-safety: several renders of one database may run at once.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,9 @@ struct Sun {
 struct RenderOptions {
   Camera camera;
   Sun sun;
-  double tolerance = 1.0;   // pixels; 0 draws full resolution
-  int fixed_level = -1;     // >= 0: draw this level whatever the tolerance (tests and benches)
-  int threads = 0;          // 0: as many as the machine has
+  double tolerance = 1.0;  // pixels; 0 draws full resolution
+  int fixed_level = -1;    // >= 0: draw this level whatever the tolerance (tests and benches)
+  int threads = 0;         // 0: as many as the machine has
   bool keep_triangle_ids = false;
 };
 
@@ -36,10 +36,11 @@ enum class Surface : std::uint8_t { kSky = 0, kSea = 1, kTerrain = 2 };
 
 struct Picture {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;       // 3 bytes a pixel, sRGB, row by row from the top
-  std::vector<float> depth;            // U, metres along the view axis; +infinity for sky
+  std::vector<std::uint8_t> rgb;  // 3 bytes a pixel, sRGB, row by row from the top
+  std::vector<float> depth;       // U, metres along the view axis; +infinity for sky
   std::vector<Surface> surface;
-  std::vector<std::uint64_t> triangle; // only with keep_triangle_ids: node record number << 32 | cell << 1 | (1 for the top face)
+  std::vector<std::uint64_t>
+      triangle;  // only with keep_triangle_ids: node record number << 32 | cell << 1 | (1 for the top face)
 };
 
 struct FrameStatistics {
@@ -54,9 +55,9 @@ struct FrameStatistics {
   } samples;
   std::uint64_t bytes_read = 0;
   std::uint64_t posts_decoded = 0;
-  int level = 0;                       // drawn level of detail
-  double projected_error = 0;          // pixels, bound of what is drawn
-  double depth_complexity = 0;         // samples tested per covered pixel
+  int level = 0;                // drawn level of detail
+  double projected_error = 0;   // pixels, bound of what is drawn
+  double depth_complexity = 0;  // samples tested per covered pixel
   struct Milliseconds {
     double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;
   } milliseconds;

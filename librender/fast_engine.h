@@ -1,0 +1,16 @@
+// The product's engine: scheduler -> terrain object processor -> pretiler -> tiler -> depth/frame buffer ->
+// resolver. Single stages run in parallel over nodes, screen tiles and rows; the picture does not depend on
+// how many threads.
+#pragma once
+
+#include "librender/scene/render.h"
+
+namespace deltaz {
+
+class FastEngine : public Engine {
+ public:
+  Result<Picture> render(const Database& database, const RenderOptions& options,
+                         FrameStatistics& statistics) const override;
+};
+
+}  // namespace deltaz

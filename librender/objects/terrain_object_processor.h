@@ -1,0 +1,61 @@
+// The terrain object processor (report 5.5): one node's posts in view space, lit and coloured, and its front
+// faces.
+//
+// Positions are exact WGS-84: on a geodetic grid each view coordinate of post (column, row, h) is
+//   (a + b h) k + (c + s h) m3 - t
+// with the row constants a, b, c, s of libdb/access/earth.h, k = m1 cos(lon) + m2 sin(lon) of the column and
+// view, (m1, m2, m3) the view vector and t its product with the eye. In double the result is within 1e-7 m of
+// GeographicLib anywhere on Earth, poles and antimeridian included, and the same for a post shared by two
+// nodes. Thread-safety: pure functions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libdb/access/grid_geometry.h"
+#include "libdb/access/terrain_tile.h"
+#include "libdb/access/vector3.h"
+#include "librender/scene/camera.h"
+#include "librender/scene/color.h"
+#include "librender/scene/illumination.h"
+
+namespace deltaz {
+
+// Posts row by row from the south-west, columns * rows of them; what stands at a void post is not used by any
+// face.
+struct TerrainVertices {
+  int columns = 0, rows = 0;
+  std::vector<Vector3> position;   // (U, V, W)
+  std::vector<LinearColor> color;  // illumination times synthetic colour, linear
+};
+
+// A face by the indices of its posts, in the order of the report (counter-clockwise seen from above).
+struct TerrainFace {
+  std::array<std::uint32_t, 3> vertex{};
+  std::uint32_t identity = 0;  // cell << 1 | (1 for the top face), cell = row * (columns - 1) + column
+};
+
+struct TerrainFaces {
+  std::vector<TerrainFace> front;
+  std::uint64_t in = 0, back_facing = 0;  // in = back_facing + front.size()
+};
+
+std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
+                                      const ViewTransform& view);
+std::vector<LinearColor> terrainColors(const TerrainTile& tile, const GridGeometry& geometry,
+                                       const Light& light);
+TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
+                                const ViewTransform& view, const Light& light);
+
+// True for a face whose upper side is turned away from the eye (or edge-on, or of no extent). Vertices in
+// view space.
+inline bool isBackFacing(const Vector3& a, const Vector3& b, const Vector3& c) {
+  return !(dot(cross(b - a, c - a), a) < 0);
+}
+
+// Faces whose three posts are valid, sorted into front and back, cells row by row, bottom face before top
+// face.
+TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position);
+
+}  // namespace deltaz

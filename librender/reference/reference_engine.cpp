@@ -1,0 +1,270 @@
+#include "librender/reference/reference_engine.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <vector>
+
+#include "librender/objects/terrain_object_processor.h"
+#include "librender/scene/environment.h"
+#include "librender/scene/stopwatch.h"
+#include "librender/scene/view_volume.h"
+
+namespace deltaz {
+namespace {
+
+struct Vertex {
+  Vector3 position;  // view space
+  LinearColor color;
+};
+
+struct Triangle {
+  std::array<const Vertex*, 3> vertex{};
+  std::uint64_t identity = 0;
+};
+
+// A pixel's nearest terrain so far.
+struct Sample {
+  double inverse_u = 0;
+  LinearColor color;
+  std::uint64_t identity = 0;
+};
+
+// Inclusive pixel ranges that hold all a triangle can cover; only there to save time.
+struct Box {
+  int first_j, last_j, first_i, last_i;
+};
+
+std::vector<Vertex> verticesOf(const TerrainTile& tile, const GridGeometry& geometry,
+                               const Environment& environment) {
+  const std::vector<LinearColor> colors = terrainColors(tile, geometry, environment.light);
+  const std::int64_t step = std::int64_t{1} << tile.level;
+  std::vector<Vertex> vertices;
+  vertices.reserve(colors.size());
+  for (int j = 0; j < tile.rows; ++j) {
+    for (int i = 0; i < tile.columns; ++i) {
+      const GeodeticPoint point{geometry.latitude((tile.first_row + j) * step),
+                                geometry.longitude((tile.first_column + i) * step),
+                                geometry.metres(tile.height(i, j))};
+      vertices.push_back({environment.view.toView(toEarthCentred(geometry.header().ellipsoid, point)),
+                          colors[vertices.size()]});
+    }
+  }
+  return vertices;
+}
+
+// The valid faces of a tile that are not turned away from the eye.
+std::vector<Triangle> trianglesOf(const TerrainTile& tile, const std::vector<Vertex>& vertices,
+                                  std::uint32_t record, FrameStatistics::Triangles& counts) {
+  std::vector<Triangle> triangles;
+  const auto add = [&](int cell_i, int cell_j, bool top, const Vertex& a, const Vertex& b, const Vertex& c) {
+    ++counts.in;
+    const Vector3 normal = cross(b.position - a.position, c.position - a.position);
+    if (dot(normal, a.position) >= 0) {
+      ++counts.back_facing;
+      return;
+    }
+    const std::uint64_t cell =
+        static_cast<std::uint64_t>(cell_j) * static_cast<std::uint64_t>(tile.columns - 1) +
+        static_cast<std::uint64_t>(cell_i);
+    triangles.push_back({{&a, &b, &c}, std::uint64_t{record} << 32 | cell << 1 | (top ? 1 : 0)});
+  };
+  for (int j = 0; j + 1 < tile.rows; ++j) {
+    for (int i = 0; i + 1 < tile.columns; ++i) {
+      const auto post = [&](int di, int dj) -> const Vertex& {
+        return vertices[static_cast<std::size_t>(j + dj) * static_cast<std::size_t>(tile.columns) +
+                        static_cast<std::size_t>(i + di)];
+      };
+      if (tile.bottomFaceValid(i, j)) add(i, j, false, post(0, 0), post(1, 0), post(1, 1));
+      if (tile.topFaceValid(i, j)) add(i, j, true, post(0, 0), post(1, 1), post(0, 1));
+    }
+  }
+  return triangles;
+}
+
+Box boxOf(const Triangle& triangle, const ViewTransform& view) {
+  const Box everything{0, view.width - 1, 0, view.height - 1};
+  const Box nothing{0, -1, 0, -1};
+  double left = 1e300, right = -1e300, top = 1e300, bottom = -1e300;
+  int behind = 0, outside_left = 0, outside_right = 0, outside_top = 0, outside_bottom = 0;
+  for (const Vertex* vertex : triangle.vertex) {
+    const Vector3& p = vertex->position;
+    behind += p.x <= kHither;
+    outside_left += p.y < -view.width * p.x;
+    outside_right += p.y > view.width * p.x;
+    outside_top += p.z < -view.height * p.x;
+    outside_bottom += p.z > view.height * p.x;
+    left = std::min(left, p.y / p.x);
+    right = std::max(right, p.y / p.x);
+    top = std::min(top, p.z / p.x);
+    bottom = std::max(bottom, p.z / p.x);
+  }
+  if (behind == 3 || outside_left == 3 || outside_right == 3 || outside_top == 3 || outside_bottom == 3)
+    return nothing;
+  if (behind > 0) return everything;
+  const auto pixel = [](double value, int limit) {
+    return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(limit)));
+  };
+  return {std::max(0, pixel(view.centre_j + left - 1, view.width)),
+          std::min(view.width - 1, pixel(view.centre_j + right + 1, view.width)),
+          std::max(0, pixel(view.centre_i + top - 1, view.height)),
+          std::min(view.height - 1, pixel(view.centre_i + bottom + 1, view.height))};
+}
+
+// Draws what of the triangle lies in rows first_i .. last_i. Returns whether it covered a sample there.
+bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, int first_i, int last_i,
+          std::vector<Sample>& samples, FrameStatistics::Samples& counts) {
+  const Vector3 &a = triangle.vertex[0]->position, &b = triangle.vertex[1]->position,
+                &c = triangle.vertex[2]->position;
+  const Vector3 edge_a = cross(b, c), edge_b = cross(c, a), edge_c = cross(a, b);
+  // The face's plane: normal . p = constant; on the ray, 1/U = normal . ray / constant.
+  const Vector3 normal = cross(b - a, c - a);
+  const double constant = dot(normal, a);
+  bool covers = false;
+  for (int i = std::max(first_i, box.first_i); i <= std::min(last_i, box.last_i); ++i) {
+    for (int j = box.first_j; j <= box.last_j; ++j) {
+      const Vector3 ray{1, j - view.centre_j, i - view.centre_i};
+      // For a front face all three are negative inside; each is its vertex's weight times a common factor.
+      const double weight_a = dot(edge_a, ray), weight_b = dot(edge_b, ray), weight_c = dot(edge_c, ray);
+      if (weight_a > 0 || weight_b > 0 || weight_c > 0) continue;
+      const double sum = weight_a + weight_b + weight_c;
+      const double inverse_u = dot(normal, ray) / constant;
+      if (!(sum < 0) || !(inverse_u > 0) || inverse_u >= 1 / kHither) continue;
+      covers = true;
+      ++counts.tested;
+      Sample& sample = samples[static_cast<std::size_t>(i) * static_cast<std::size_t>(view.width) +
+                               static_cast<std::size_t>(j)];
+      if (inverse_u <= sample.inverse_u) continue;
+      ++counts.written;
+      sample = {inverse_u,
+                triangle.vertex[0]->color * (weight_a / sum) + triangle.vertex[1]->color * (weight_b / sum) +
+                    triangle.vertex[2]->color * (weight_c / sum),
+                triangle.identity};
+    }
+  }
+  return covers;
+}
+
+Picture finish(const std::vector<Sample>& samples, const Environment& environment,
+               const RenderOptions& options, FrameStatistics& statistics) {
+  Picture picture = makePicture(options);
+  std::uint64_t covered = 0;
+  for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
+    const Sample& sample = samples[pixel];
+    const auto width = static_cast<std::size_t>(picture.width);
+    const Vector3 ray =
+        environment.view.ray(static_cast<double>(pixel % width), static_cast<double>(pixel / width));
+    const double sea_u = environment.sea.depth(ray);
+    const double terrain_u = 1 / sample.inverse_u;  // infinite where there is none
+    covered += sample.inverse_u > 0;
+    if (sample.inverse_u > 0 && terrain_u <= sea_u) {
+      storePixel(environment, ray, Surface::kTerrain, terrain_u, sample.color, pixel, picture);
+      if (options.keep_triangle_ids) picture.triangle[pixel] = sample.identity;
+      ++statistics.samples.shaded;
+    } else if (sea_u < std::numeric_limits<double>::infinity()) {
+      storePixel(environment, ray, Surface::kSea, sea_u, environment.sea.color(ray, sea_u), pixel, picture);
+    } else {
+      storePixel(environment, ray, Surface::kSky, sea_u, environment.atmosphere.sky(ray), pixel, picture);
+    }
+  }
+  if (covered > 0)
+    statistics.depth_complexity =
+        static_cast<double>(statistics.samples.tested) / static_cast<double>(covered);
+  return picture;
+}
+
+Result<Picture> renderInArena(const Database& database, const RenderOptions& options,
+                              FrameStatistics& statistics) {
+  Stopwatch watch;
+  const std::uint64_t bytes_before = database.bytesRead();
+  DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
+  const ViewTransform& view = environment.view;
+
+  std::vector<Node> nodes;
+  for (int grid = 0; grid < database.gridCount(); ++grid) {
+    DELTAZ_TRY_ASSIGN(const std::vector<Node> of_grid, nodesOfLevel(database, grid, 0));
+    nodes.insert(nodes.end(), of_grid.begin(), of_grid.end());
+  }
+  statistics.nodes.visited = statistics.nodes.drawn = nodes.size();
+  statistics.milliseconds.schedule = watch.lap();
+
+  std::vector<std::optional<Result<TerrainTile>>> tiles(nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.size(),
+                    [&](std::size_t n) { tiles[n].emplace(database.terrain(nodes[n])); });
+  for (const std::optional<Result<TerrainTile>>& tile : tiles) {
+    if (!tile->ok()) return tile->error();
+    statistics.posts_decoded +=
+        static_cast<std::uint64_t>(tile->value().columns) * static_cast<std::uint64_t>(tile->value().rows);
+  }
+  statistics.bytes_read = database.bytesRead() - bytes_before;
+  statistics.milliseconds.read = watch.lap();
+
+  std::vector<std::vector<Vertex>> vertices(nodes.size());
+  std::vector<std::vector<Triangle>> triangles(nodes.size());
+  std::vector<FrameStatistics::Triangles> of_node(nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
+    const TerrainTile& tile = tiles[n]->value();
+    vertices[n] = verticesOf(tile, database.grid(tile.grid), environment);
+    triangles[n] = trianglesOf(tile, vertices[n], nodes[n].number, of_node[n]);
+  });
+  statistics.milliseconds.objects = watch.lap();
+
+  // Bands of rows do not touch each other's samples; each sees all triangles in the same order.
+  constexpr int kBands = 8;
+  std::vector<Sample> samples(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+  std::vector<std::vector<std::uint8_t>> covers(nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) covers[n].assign(triangles[n].size(), 0);
+  std::vector<FrameStatistics::Samples> of_band(kBands);
+  tbb::parallel_for(0, kBands, [&](int band) {
+    const int first_i = view.height * band / kBands, last_i = view.height * (band + 1) / kBands - 1;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (std::size_t t = 0; t < triangles[n].size(); ++t) {
+        const Box box = boxOf(triangles[n][t], view);
+        if (box.last_i < first_i || box.first_i > last_i) continue;
+        if (draw(triangles[n][t], box, view, first_i, last_i, samples,
+                 of_band[static_cast<std::size_t>(band)]))
+          std::atomic_ref<std::uint8_t>(covers[n][t]).store(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  for (const FrameStatistics::Samples& counts : of_band) {
+    statistics.samples.tested += counts.tested;
+    statistics.samples.written += counts.written;
+  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    statistics.triangles.in += of_node[n].in;
+    statistics.triangles.back_facing += of_node[n].back_facing;
+    for (std::size_t t = 0; t < triangles[n].size(); ++t) {
+      const Box box = boxOf(triangles[n][t], view);
+      const bool outside = box.first_i > box.last_i || box.first_j > box.last_j;
+      ++(covers[n][t] != 0 ? statistics.triangles.drawn
+         : outside         ? statistics.triangles.clipped
+                           : statistics.triangles.no_sample);
+    }
+  }
+  statistics.milliseconds.raster = watch.lap();
+
+  Picture picture = finish(samples, environment, options, statistics);
+  statistics.milliseconds.resolve = watch.lap();
+  statistics.milliseconds.total = watch.total();
+  return picture;
+}
+
+}  // namespace
+
+Result<Picture> ReferenceEngine::render(const Database& database, const RenderOptions& options,
+                                        FrameStatistics& statistics) const {
+  statistics = {};
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  std::optional<Result<Picture>> result;
+  arena.execute([&] { result.emplace(renderInArena(database, options, statistics)); });
+  return std::move(*result);
+}
+
+}  // namespace deltaz

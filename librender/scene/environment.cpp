@@ -1,0 +1,67 @@
+#include "librender/scene/environment.h"
+
+#include <cmath>
+#include <limits>
+
+namespace deltaz {
+namespace {
+
+constexpr int kLargestPicture = 1 << 14;  // pixels a side: the guard band of the pretiler
+
+Status checkOptions(const RenderOptions& options) {
+  const Camera& camera = options.camera;
+  if (camera.width < 1 || camera.height < 1 || camera.width > kLargestPicture ||
+      camera.height > kLargestPicture)
+    return usageError("picture size", "must be 1 to 16384 pixels each way");
+  if (!(camera.field_of_view > 0 && camera.field_of_view < 180))
+    return usageError("field of view", "must be more than 0 and less than 180 degrees");
+  if (!(std::abs(camera.eye.latitude) <= 90))
+    return usageError("eye", "latitude must be -90 to 90 degrees",
+                      "it comes first: latitude, longitude, height");
+  const double values[] = {camera.eye.longitude, camera.eye.height,   camera.heading,       camera.pitch,
+                           camera.roll,          options.sun.azimuth, options.sun.elevation};
+  for (const double value : values) {
+    if (!std::isfinite(value)) return usageError("view", "eye, look and sun must be finite numbers");
+  }
+  if (!(options.tolerance >= 0)) return usageError("tolerance", "must be 0 or more pixels");
+  return Success{};
+}
+
+}  // namespace
+
+Result<Environment> makeEnvironment(const Database& database, const RenderOptions& options) {
+  DELTAZ_TRY(checkOptions(options));
+  if (database.gridCount() < 1) return usageError(database.path(), "has no grid to draw");
+  const AreaHeader& area = database.area();
+  const EllipsoidShape& ellipsoid = area.grids.front().ellipsoid;
+  const ViewTransform view = makeViewTransform(options.camera, ellipsoid);
+  const Light light = makeLight(area, options.sun);
+  const Atmosphere atmosphere(ellipsoid, view, light.to_sun);
+  return Environment{view, light, atmosphere, Sea(area, view, light, atmosphere)};
+}
+
+Picture makePicture(const RenderOptions& options) {
+  const auto pixels =
+      static_cast<std::size_t>(options.camera.width) * static_cast<std::size_t>(options.camera.height);
+  Picture picture;
+  picture.width = options.camera.width;
+  picture.height = options.camera.height;
+  picture.rgb.resize(pixels * 3);
+  picture.depth.resize(pixels, std::numeric_limits<float>::infinity());
+  picture.surface.resize(pixels, Surface::kSky);
+  if (options.keep_triangle_ids) picture.triangle.resize(pixels, 0);
+  return picture;
+}
+
+void storePixel(const Environment& environment, const Vector3& ray, Surface surface, double u,
+                const LinearColor& color, std::size_t pixel, Picture& picture) {
+  const LinearColor seen =
+      surface == Surface::kSky ? color : environment.atmosphere.throughHaze(color, ray, u);
+  picture.rgb[3 * pixel] = encodeSrgb(seen.red);
+  picture.rgb[3 * pixel + 1] = encodeSrgb(seen.green);
+  picture.rgb[3 * pixel + 2] = encodeSrgb(seen.blue);
+  picture.depth[pixel] = static_cast<float>(u);
+  picture.surface[pixel] = surface;
+}
+
+}  // namespace deltaz

@@ -1,0 +1,28 @@
+// Everything both engines take from the scene definitions for one frame, and the checks both make.
+#pragma once
+
+#include "librender/scene/atmosphere.h"
+#include "librender/scene/illumination.h"
+#include "librender/scene/render.h"
+#include "librender/scene/sea.h"
+
+namespace deltaz {
+
+struct Environment {
+  ViewTransform view;
+  Light light;
+  Atmosphere atmosphere;
+  Sea sea;
+};
+
+// kUsage for views that make no sense.
+Result<Environment> makeEnvironment(const Database& database, const RenderOptions& options);
+
+// A picture of the frame's size with room for what the options ask for, all sky.
+Picture makePicture(const RenderOptions& options);
+
+// Stores a finished pixel: colour before haze, what it is, and its depth (+infinity for sky).
+void storePixel(const Environment& environment, const Vector3& ray, Surface surface, double u,
+                const LinearColor& color, std::size_t pixel, Picture& picture);
+
+}  // namespace deltaz
