@@ -109,7 +109,7 @@ Result<std::unique_ptr<WritableFile>> MemoryFileSystem::create(const std::string
   const std::lock_guard guard(state_->mutex);
   const std::string name = normalized(path);
   if (state_->files.contains(name) || state_->folders.contains(name)) {
-    return usageError(path, "cannot create", "File exists");
+    return accessError(path, "cannot create", "File exists");
   }
   const std::string parent = parentOf(name);
   if (!parent.empty() && !state_->folders.contains(parent)) {
@@ -148,7 +148,7 @@ Status MemoryFileSystem::makeDirectory(const std::string& path) const {
   const std::lock_guard guard(state_->mutex);
   const std::string name = normalized(path);
   if (name.empty() || state_->files.contains(name) || state_->folders.contains(name)) {
-    return usageError(path, "cannot create the folder", "File exists");
+    return accessError(path, "cannot create the folder", "File exists");
   }
   const std::string parent = parentOf(name);
   if (!parent.empty() && !state_->folders.contains(parent)) {
