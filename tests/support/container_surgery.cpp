@@ -40,7 +40,8 @@ std::size_t entryOffset(const FileBytes& file, std::uint32_t number) {
 }
 
 BlockLocation entryOf(const FileBytes& file, std::uint32_t number) {
-  ByteReader reader(std::span(file).subspan(entryOffset(file, number), kIndexEntryBytes));
+  const std::span<const std::byte> bytes(file);
+  ByteReader reader(bytes.subspan(entryOffset(file, number), kIndexEntryBytes));
   BlockLocation entry;
   entry.offset = reader.get<std::uint64_t>();
   entry.length = reader.get<std::uint32_t>();
