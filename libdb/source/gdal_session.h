@@ -14,6 +14,7 @@ class GdalSession {
 
   // The last failure GDAL reported in this session, or "no reason given".
   std::string lastFailure() const;
+  bool hasFailed() const { return !failure_.empty(); }
 
  private:
   std::string failure_;
