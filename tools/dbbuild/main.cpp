@@ -1,0 +1,24 @@
+// dbbuild: makes databases from DEMs, says what is in them, and gives the DEM back. See dbbuild(1).
+#include <array>
+
+#include "tools/dbbuild/command.h"
+
+int main(int argc, char** argv) {
+  using namespace deltaz;
+  CLI::App app("Builds gaming-area terrain databases from DEMs, and gives the DEM back.", "dbbuild");
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done; 1 content refused or damaged; 2 usage, target exists; 3 cannot read, write or "
+      "lock;\n"
+      "4 newer format; 70 internal error. See dbbuild(1).");
+  const std::array<std::unique_ptr<Command>, 3> commands = {makeTerrainCommand(app), makeInfoCommand(app),
+                                                            makeExportCommand(app)};
+  return runTool("dbbuild", [&]() -> Result<int> {
+    if (const auto code = parseCommandLine(app, "dbbuild", argc, argv)) return *code;
+    for (const auto& command : commands) {
+      if (command->app().parsed()) return command->run();
+    }
+    return internalError("command line", "no command was found in it");
+  });
+}
