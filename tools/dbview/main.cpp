@@ -1,0 +1,98 @@
+// dbview: a database and a viewpoint in, a picture out. See dbview(1).
+#include <algorithm>
+#include <fmt/format.h>
+#include <iostream>
+#include <vector>
+
+#include "tools/common/output_file.h"
+#include "tools/common/picture_file.h"
+#include "tools/common/progress.h"
+#include "tools/dbview/depth_description.h"
+#include "tools/dbview/options.h"
+#include "tools/dbview/statistics_json.h"
+
+namespace deltaz {
+
+namespace {
+
+struct Frame {
+  Picture picture;
+  std::vector<FrameStatistics> repeats;
+};
+
+// Renders as often as asked. A frame that comes out differently the second time breaks a promise of the
+// engines.
+Result<Frame> renderFrame(const Database& database, const View& view, const CommonOptions& common) {
+  ProgressReporter progress(progressMode(common), "dbview", std::cerr);
+  const std::unique_ptr<Engine> engine = makeEngine(view.engine);
+  Frame frame;
+  for (int i = 0; i < view.repeat; ++i) {
+    progress.report("rendering", static_cast<double>(i) / view.repeat);
+    FrameStatistics statistics;
+    DELTAZ_TRY_ASSIGN(Picture picture, engine->render(database, view.render, statistics));
+    frame.repeats.push_back(statistics);
+    if (i > 0 && (picture.rgb != frame.picture.rgb || picture.depth != frame.picture.depth)) {
+      return internalError(engineName(view.engine),
+                           fmt::format("frame {} is not the picture of frame 1", i + 1));
+    }
+    frame.picture = std::move(picture);
+  }
+  progress.report("done", 1);
+  return frame;
+}
+
+void printSummary(const ViewOptions& options, const View& view, const Json& statistics) {
+  if (options.common.json) {
+    std::cout << jsonText(statistics);
+    return;
+  }
+  if (options.common.quiet) return;
+  const Json& frame = statistics["frames"][0];
+  std::cout << fmt::format(
+      "{}: {} x {}, level {}, {} triangles drawn of {}, {:.1f} ms\n", options.output,
+      view.render.camera.width, view.render.camera.height, frame["level"].get<int>(),
+      frame["triangles"]["drawn"].get<std::uint64_t>(), frame["triangles"]["in"].get<std::uint64_t>(),
+      frame["frame_ms"]["median"].is_null() ? 0.0 : frame["frame_ms"]["median"].get<double>());
+  if (!options.common.verbose) return;
+  const Camera& camera = view.render.camera;
+  std::cout << fmt::format("  eye {:.6f},{:.6f},{:.1f} look {:.3f},{:.3f},{:.3f} fov {}\n",
+                           camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading,
+                           camera.pitch, camera.roll, camera.field_of_view);
+}
+
+Result<int> run(const ViewOptions& options) {
+  DELTAZ_TRY_ASSIGN(View view, parseView(options));
+  DELTAZ_TRY_ASSIGN(const Database database, Database::open(localFileSystem(), options.area));
+  DELTAZ_TRY(placeCamera(database, options, view));
+  DELTAZ_TRY_ASSIGN(const Frame frame, renderFrame(database, view, options.common));
+
+  const Json statistics = statisticsJson(options.area, view, frame.repeats);
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> png, encodePng(frame.picture));
+  std::vector<std::byte> depth;
+  if (!options.depth_path.empty()) {
+    DELTAZ_TRY_ASSIGN(depth, encodeDepthTiff(frame.picture, depthDescription(database, view.render.camera)));
+  }
+  // The picture comes last: where it stands, everything asked for does.
+  const bool overwrite = options.common.overwrite;
+  if (!options.depth_path.empty()) DELTAZ_TRY(writeOutput(options.depth_path, depth, overwrite));
+  if (!options.statistics_path.empty())
+    DELTAZ_TRY(writeOutput(options.statistics_path, jsonText(statistics), overwrite));
+  DELTAZ_TRY(writeOutput(options.output, png, overwrite));
+  printSummary(options, view, statistics);
+  return kExitDone;
+}
+
+}  // namespace
+
+}  // namespace deltaz
+
+int main(int argc, char** argv) {
+  using namespace deltaz;
+  CLI::App app("Draws a terrain database from a viewpoint.", "dbview");
+  ViewOptions options;
+  addViewOptions(app, options);
+  return runTool("dbview", [&]() -> Result<int> {
+    if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
+    return run(options);
+  });
+}

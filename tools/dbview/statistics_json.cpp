@@ -1,0 +1,99 @@
+#include "tools/dbview/statistics_json.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "formats/file_system.h"
+
+namespace deltaz {
+
+namespace {
+
+// Minimum, median (of an even number: the mean of the middle two) and maximum.
+struct Spread {
+  double minimum = 0, median = 0, maximum = 0;
+};
+
+template <typename Value>
+Spread spreadOf(std::span<const FrameStatistics> repeats, Value value) {
+  std::vector<double> values;
+  for (const FrameStatistics& frame : repeats) values.push_back(value(frame.milliseconds));
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+  return {values.front(), median, values.back()};
+}
+
+Json stagesJson(std::span<const FrameStatistics> repeats) {
+  using Milliseconds = FrameStatistics::Milliseconds;
+  const auto median = [repeats](double Milliseconds::*stage) {
+    return finiteOrNull(
+        spreadOf(repeats, [stage](const Milliseconds& times) { return times.*stage; }).median);
+  };
+  Json json;
+  json["schedule"] = median(&Milliseconds::schedule);
+  json["read"] = median(&Milliseconds::read);
+  json["objects"] = median(&Milliseconds::objects);
+  json["raster"] = median(&Milliseconds::raster);
+  json["resolve"] = median(&Milliseconds::resolve);
+  return json;
+}
+
+Json frameJson(std::span<const FrameStatistics> repeats) {
+  const FrameStatistics& first = repeats.front();
+  Json json;
+  json["nodes"] = {{"visited", first.nodes.visited},
+                   {"out_of_view", first.nodes.out_of_view},
+                   {"beyond_horizon", first.nodes.beyond_horizon},
+                   {"facing_away", first.nodes.facing_away},
+                   {"occluded", first.nodes.occluded},
+                   {"drawn", first.nodes.drawn}};
+  json["triangles"] = {{"in", first.triangles.in},
+                       {"back_facing", first.triangles.back_facing},
+                       {"clipped", first.triangles.clipped},
+                       {"no_sample", first.triangles.no_sample},
+                       {"drawn", first.triangles.drawn}};
+  json["samples"] = {
+      {"tested", first.samples.tested}, {"written", first.samples.written}, {"shaded", first.samples.shaded}};
+  json["bytes_read"] = first.bytes_read;
+  json["posts_decoded"] = first.posts_decoded;
+  json["depth_complexity"] = finiteOrNull(first.depth_complexity);
+  json["level"] = first.level;
+  json["projected_error"] = finiteOrNull(first.projected_error);
+  json["stages_ms"] = stagesJson(repeats);
+  const Spread total =
+      spreadOf(repeats, [](const FrameStatistics::Milliseconds& times) { return times.total; });
+  json["frame_ms"] = {{"min", finiteOrNull(total.minimum)},
+                      {"median", finiteOrNull(total.median)},
+                      {"max", finiteOrNull(total.maximum)}};
+  return json;
+}
+
+}  // namespace
+
+Json cameraJson(const Camera& camera) {
+  Json json;
+  json["eye"] = {
+      {"latitude", camera.eye.latitude}, {"longitude", camera.eye.longitude}, {"height", camera.eye.height}};
+  json["heading"] = camera.heading;
+  json["pitch"] = camera.pitch;
+  json["roll"] = camera.roll;
+  json["field_of_view"] = camera.field_of_view;
+  json["width"] = camera.width;
+  json["height"] = camera.height;
+  return json;
+}
+
+Json statisticsJson(const std::string& area, const View& view, std::span<const FrameStatistics> repeats) {
+  Json json = jsonHeader("dbview");
+  json["area"] = baseName(area);
+  json["engine"] = engineName(view.engine);
+  json["tolerance"] = view.render.tolerance;
+  json["repeat"] = repeats.size();
+  json["camera"] = cameraJson(view.render.camera);
+  json["sun"] = {{"azimuth", view.render.sun.azimuth}, {"elevation", view.render.sun.elevation}};
+  json["frames"] = Json::array({frameJson(repeats)});
+  return json;
+}
+
+}  // namespace deltaz
