@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kNewAreaName = ".area.json.new";
 
-std::string temporaryPrefix(const std::string& target) { return "." + baseName(target) + ".tmp-"; }
+std::string temporaryPrefix(const std::string& target) { return fmt::format(".{}.tmp-", baseName(target)); }
 
 Error targetExists(const std::string& target) {
   return usageError(target, "the target exists", {}, "Choose another name or give --overwrite");
