@@ -58,32 +58,34 @@ bool readArea(CheckContext& context) {
   return true;
 }
 
-void openFile(CheckContext& context, CheckedFile& file) {
+Status openContainer(CheckContext& context, CheckedFile& file) {
   const FileReference& reference = file.reference;
   const std::string path = joinPath(context.path, reference.name);
-  const auto type = context.files.typeOf(path);
-  if (!type.ok()) return addError(context.report, type.error(), inFile(reference.name));
-  if (type.value() == PathType::kAbsent) {
-    context.report.add(makeIssue(IssueCode::kIoMissingFile, "area.json lists this file, but it is not there",
-                                 inFile(reference.name)));
-    return;
+  DELTAZ_TRY_ASSIGN(const PathType type, context.files.typeOf(path));
+  if (type == PathType::kAbsent) {
+    return invalidError(IssueCode::kIoMissingFile, path, "area.json lists this file, but it is not there");
   }
-  auto container = ContainerReader::open(context.files, path, contentKind(reference.role));
-  if (!container.ok()) return addError(context.report, container.error(), inFile(reference.name));
-  const FileIdentity& identity = container.value().identity();
+  DELTAZ_TRY_ASSIGN(ContainerReader container,
+                    ContainerReader::open(context.files, path, contentKind(reference.role)));
+  const FileIdentity& identity = container.identity();
   if (identity.length != reference.length || identity.id != reference.id) {
-    context.report.add(
-        makeIssue(IssueCode::kManFileMismatch,
-                  fmt::format("area.json lists {} bytes with identity {}, the file has {} with {}",
-                              reference.length, toHex(reference.id), identity.length, toHex(identity.id)),
-                  inFile(reference.name)));
+    return invalidError(
+        IssueCode::kManFileMismatch, path,
+        fmt::format("area.json lists {} bytes with identity {}, the file has {} with {}", reference.length,
+                    toHex(reference.id), identity.length, toHex(identity.id)));
   }
-  if (const Status index = container.value().checkIndex(); !index.ok()) {
-    addError(context.report, index.error(), inFile(reference.name));
-    return;
-  }
-  file.damaged_blocks.assign(container.value().blockCount(), 0);
-  file.container = std::move(container).value();
+  DELTAZ_TRY(container.checkIndex());
+  file.damaged_blocks.assign(container.blockCount(), 0);
+  file.container = std::move(container);
+  return Success{};
+}
+
+void openFile(CheckContext& context, CheckedFile& file) {
+  const Status opened = openContainer(context, file);
+  if (opened.ok()) return;
+  addError(context.report, opened.error(), inFile(file.reference.name));
+  addSkipped(context.report,
+             fmt::format("the contents of {}, which could not be opened", file.reference.name));
 }
 
 // What readers rely on in the list of files as a whole: one node file of the right number of pages, and

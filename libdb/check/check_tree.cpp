@@ -308,8 +308,12 @@ class TreeRule {
     for (std::uint32_t child = record.first_child; child != 0; child = context_.record(child).sibling) {
       const NodeRecord& below = context_.record(child);
       if (below.isEmpty()) continue;
-      lowest = empty ? below.minimum_height : std::min(lowest, below.minimum_height);
-      highest = empty ? below.maximum_height : std::max(highest, below.maximum_height);
+      const std::int32_t low =
+          number == 1 ? metresBelow(below.grid, below.minimum_height) : below.minimum_height;
+      const std::int32_t high =
+          number == 1 ? metresAbove(below.grid, below.maximum_height) : below.maximum_height;
+      lowest = empty ? low : std::min(lowest, low);
+      highest = empty ? high : std::max(highest, high);
       empty = false;
     }
     if (empty != record.isEmpty()) {
@@ -318,13 +322,22 @@ class TreeRule {
                      : "it is marked empty, but a node below is not");
       return;
     }
-    // The heights of grids with different quanta have no common unit.
-    if (number == 1 && context_.grids.size() > 1) return;
     if (!empty && (record.minimum_height != lowest || record.maximum_height != highest)) {
       complain(IssueCode::kTileHeightRange, number,
-               fmt::format("its heights are {} to {} quanta, those below it {} to {}", record.minimum_height,
+               fmt::format("its heights are {} to {}, those below it {} to {}", record.minimum_height,
                            record.maximum_height, lowest, highest));
     }
+  }
+
+  // The area's record counts in metres, since grids may differ in their quantum: the range rounded outwards.
+  std::int32_t metresBelow(std::size_t grid, std::int32_t quanta) const {
+    return fitting(std::floor(context_.grids[grid].metres(quanta)));
+  }
+  std::int32_t metresAbove(std::size_t grid, std::int32_t quanta) const {
+    return fitting(std::ceil(context_.grids[grid].metres(quanta)));
+  }
+  static std::int32_t fitting(double metres) {
+    return static_cast<std::int32_t>(std::clamp<double>(metres, INT32_MIN, INT32_MAX));
   }
 
   void checkCounts(std::uint32_t number, const NodeRecord& record) {

@@ -22,6 +22,9 @@ class FaultFileSystem final : public FileSystem {
   // Operation number `failing` (counted from 1) fails; 0: none, only count.
   FaultFileSystem(const FileSystem& files, std::uint64_t failing, FaultMode mode = FaultMode::kOnce);
 
+  // Every operation on the file `failing_path`, and only those, fail.
+  FaultFileSystem(const FileSystem& files, std::string failing_path);
+
   // Operations so far.
   std::uint64_t operations() const { return plan_->operations; }
   // Whether an operation was made to fail.
@@ -44,8 +47,9 @@ class FaultFileSystem final : public FileSystem {
     FaultMode mode = FaultMode::kOnce;
     std::atomic<std::uint64_t> operations = 0;
     std::atomic<bool> failed = false;
-    // Counts one operation; true if it is to fail.
-    bool fails();
+    std::string failing_path;
+    // Counts one operation on `path`; true if it is to fail.
+    bool fails(const std::string& path);
   };
 
  private:

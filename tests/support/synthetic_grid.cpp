@@ -93,7 +93,7 @@ RawGrid syntheticGrid(const SyntheticGridOptions& options) {
   source.driver = "GTiff";
   source.data_type = "Int16";
   source.nodata = -32768;
-  source.unit = "m";
+  source.unit = std::string("m");
   source.columns = options.columns;
   source.rows = options.rows;
   const double dx = header.longitude.spacing_degrees, dy = header.latitude.spacing_degrees;
