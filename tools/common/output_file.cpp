@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "formats/file_system.h"
@@ -12,7 +13,7 @@ namespace deltaz {
 namespace {
 
 std::string temporaryName(const std::string& path) {
-  return joinPath(parentPath(path), "." + baseName(path) + ".tmp-" + std::to_string(::getpid()));
+  return joinPath(parentPath(path), fmt::format(".{}.tmp-{}", baseName(path), ::getpid()));
 }
 
 Status writeAndSync(const std::string& path, std::span<const std::byte> bytes) {

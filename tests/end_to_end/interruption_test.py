@@ -1,0 +1,103 @@
+"""kill -9 at random moments: a target is absent or complete, and the next run cleans up.
+
+DELTAZ_KILLS is the number of kills of each case (20), DELTAZ_KILL_SEED makes a run repeatable.
+"""
+import os
+import random
+import shutil
+import subprocess
+import time
+
+from harness import RAINIER, case, main, no_leftovers, program, require, run, small_dem
+
+KILLS = int(os.environ.get("DELTAZ_KILLS", "20"))
+SEED = os.environ.get("DELTAZ_KILL_SEED", str(time.time_ns()))
+
+
+def killed_after(seconds, command):
+    """Starts a command and kills it; True if it was still running."""
+    process = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        process.wait(timeout=seconds)
+        return False
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return True
+
+
+def duration(command):
+    begin = time.monotonic()
+    subprocess.run(list(map(str, command)), check=True, capture_output=True)
+    return time.monotonic() - begin
+
+
+@case
+def a_killed_build_leaves_nothing_or_everything(folder):
+    print(f"seed {SEED}, {KILLS} kills")
+    moments = random.Random(SEED)
+    target = folder / "area.dz"
+    command = [program("dbbuild"), "terrain", RAINIER, "-o", target, "-q"]
+    whole = duration(command)
+    digest = run("dbbuild", "info", target, "--digest").out
+    shutil.rmtree(target)
+    absent = complete = 0
+    for _ in range(KILLS):
+        killed_after(moments.uniform(0, 1.05 * whole), command)
+        if target.exists():
+            complete += 1
+            run("dbcheck", target, "--level", "all")
+            require(run("dbbuild", "info", target, "--digest").out == digest, "the target is another database")
+            shutil.rmtree(target)
+        else:
+            absent += 1
+    print(f"absent {absent}, complete {complete}")
+    require(absent > 0, "no kill came before the end")
+    run("dbbuild", "terrain", RAINIER, "-o", target)
+    no_leftovers(folder)
+    run("dbcheck", target, "--against", RAINIER)
+
+
+@case
+def a_killed_overwrite_leaves_the_old_or_the_new_state(folder):
+    print(f"seed {SEED}, {KILLS} kills")
+    moments = random.Random(SEED + "overwrite")
+    old_dem = small_dem(folder)
+    target, other = folder / "area.dz", folder / "other.dz"
+    run("dbbuild", "terrain", RAINIER, "-o", other)
+    run("dbbuild", "terrain", old_dem, "-o", target)
+    digests = {"old": run("dbbuild", "info", target, "--digest").out, "new": run("dbbuild", "info", other, "--digest").out}
+    command = [program("dbbuild"), "terrain", RAINIER, "-o", target, "-q", "--overwrite"]
+    whole = duration(command)
+    found = {"old": 0, "new": 0}
+    for _ in range(KILLS):
+        run("dbbuild", "terrain", old_dem, "-o", target, "--overwrite")
+        killed_after(moments.uniform(0, 1.05 * whole), command)
+        run("dbcheck", target, "--level", "all")
+        digest = run("dbbuild", "info", target, "--digest").out
+        state = [name for name, value in digests.items() if value == digest]
+        require(state, "the target is neither the old nor the new database")
+        found[state[0]] += 1
+    print(found)
+    run("dbbuild", "terrain", RAINIER, "-o", target, "--overwrite")
+    listed = {file["name"] for file in run("dbbuild", "info", target, "--json").json()["files"]}
+    left = {file.name for file in target.iterdir()} - listed - {"area.json", "lock"}
+    require(not left, f"the next run left {left}")
+
+
+@case
+def a_killed_view_leaves_no_picture_or_a_whole_one(folder):
+    moments = random.Random(SEED + "view")
+    area, picture = folder / "area.dz", folder / "view.png"
+    run("dbbuild", "terrain", RAINIER, "-o", area)
+    command = [program("dbview"), area, "-o", picture, "-q"]
+    whole = duration(command)
+    wanted = picture.read_bytes()
+    for _ in range(KILLS):
+        picture.unlink(missing_ok=True)
+        killed_after(moments.uniform(0, 1.05 * whole), command)
+        require(not picture.exists() or picture.read_bytes() == wanted, "half a picture")
+
+
+if __name__ == "__main__":
+    main()
