@@ -1,5 +1,5 @@
-// reseal_area FILE OLD NEW: replaces OLD by NEW in an area.json and writes its hash anew, so that tests can make
-// databases that are wrong in meaning only.
+// reseal_area FILE OLD NEW: replaces OLD by NEW in an area.json and writes its hash anew, so that tests can
+// make databases that are wrong in meaning only.
 #include <fstream>
 #include <iostream>
 #include <span>

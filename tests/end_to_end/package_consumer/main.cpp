@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   deltaz::RenderOptions options;
   options.camera = deltaz::wholeAreaCamera(database.value().area(), 32, 24, 60);
   deltaz::FrameStatistics statistics;
-  const auto picture = deltaz::makeEngine(deltaz::EngineKind::kFast)->render(database.value(), options, statistics);
+  const auto picture =
+      deltaz::makeEngine(deltaz::EngineKind::kFast)->render(database.value(), options, statistics);
   if (!picture.ok()) return 1;
   std::cout << *ground.value() << '\n';
   return 0;
