@@ -35,6 +35,7 @@ class SourceRule {
     }
     parallelReport(context_.report, leaves.size(), 16,
                    [&](std::size_t item, Report& report) { compareLeaf(leaves[item], report); });
+    loader_.reportRefusedReads(context_.report);
     const std::int64_t columns = std::min(columnsEnd(), geometry_.columnsAt(0).end) -
                                  std::max(source_.header.longitude.first, geometry_.columnsAt(0).begin);
     const std::int64_t rows = std::min(rowsEnd(), geometry_.rowsAt(0).end) -

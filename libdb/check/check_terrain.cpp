@@ -32,6 +32,7 @@ class TerrainRule {
       const NodeRecord& record = context_.record(number);
       if (record.type == NodeType::kTerrain) checkNode(number, record, report);
     });
+    loader_.reportRefusedReads(context_.report);
     if (!context_.tree_sound) {
       addSkipped(context_.report, "terrain against parents and neighbours, since the tree is damaged");
     }

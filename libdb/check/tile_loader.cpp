@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "libdb/check/report_detail.h"
+
 namespace deltaz {
 
 Result<TilePointer> TileLoader::decode(std::uint32_t number) const {
@@ -45,8 +47,13 @@ Result<TilePointer> TileLoader::load(std::uint32_t number) {
     }
   }
   // Two threads may decode the same node at once; that is cheaper than waiting for each other.
-  DELTAZ_TRY_ASSIGN(TilePointer tile, decode(number));
+  auto decoded = decode(number);
   const std::lock_guard guard(mutex_);
+  if (!decoded.ok()) {
+    if (decoded.error().kind != ErrorKind::kInvalid && !refused_) refused_ = decoded.error();
+    return decoded.error();
+  }
+  TilePointer tile = std::move(decoded).value();
   if (places_.contains(number)) return tile;
   const std::size_t posts = tile->block.heights.size();
   entries_.push_front({number, tile, posts * (sizeof(std::int32_t) + 1) + sizeof(LoadedTile)});
@@ -64,6 +71,10 @@ TilePointer TileLoader::find(std::uint32_t number) {
   if (number == 0) return nullptr;
   auto tile = load(number);
   return tile.ok() ? std::move(tile).value() : nullptr;
+}
+
+void TileLoader::reportRefusedReads(Report& report) const {
+  if (refused_ && !report.fatal) addError(report, *refused_);
 }
 
 }  // namespace deltaz

@@ -7,6 +7,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -46,6 +47,9 @@ class TileLoader {
   Result<TilePointer> load(std::uint32_t number);
   // The same, but nothing for a node that is not there (0) or whose failure is reported elsewhere.
   TilePointer find(std::uint32_t number);
+  // Reports that the system refused a read, if nobody has yet: a node read well once may fail the next time,
+  // and what find() could not compare must not pass for compared.
+  void reportRefusedReads(Report& report) const;
 
  private:
   Result<TilePointer> decode(std::uint32_t number) const;
@@ -60,6 +64,7 @@ class TileLoader {
   std::list<Entry> entries_;  // last used first
   std::unordered_map<std::uint32_t, std::list<Entry>::iterator> places_;
   std::size_t bytes_ = 0;
+  std::optional<Error> refused_;
 };
 
 // Which node along one axis answers for post `post` of a level: the one it opens, and the last one for its

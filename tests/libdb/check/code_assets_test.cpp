@@ -67,7 +67,9 @@ Recipe byEditing(const std::function<void(DatabaseEditor&)>& edit) {
   };
 }
 
-void PrintTo(const Asset& asset, std::ostream* out) { *out << issueCodeName(asset.code); }
+void PrintTo(const Asset& asset, std::ostream* out) {
+  *out << issueCodeName(asset.code);
+}
 
 // Changes the terrain file's bytes; area.json is then told the file's new length and identity.
 Recipe onTerrainBytes(const std::function<void(FileBytes&)>& change) {
