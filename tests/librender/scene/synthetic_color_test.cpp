@@ -1,0 +1,47 @@
+#include "librender/scene/synthetic_color.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace deltaz {
+namespace {
+
+LinearColor at(double height, double upness, double latitude = 46.85) {
+  return naturalColor({height, upness, 0, snowLine(latitude)});
+}
+
+TEST(SyntheticColor, snow_line_is_high_in_the_tropics_and_at_sea_level_at_the_poles) {
+  EXPECT_NEAR(snowLine(0), 4800, 1);
+  EXPECT_NEAR(snowLine(46.85), 2400, 60);
+  EXPECT_NEAR(snowLine(28), 5600, 1);
+  EXPECT_NEAR(snowLine(90), 0, 1);
+  EXPECT_EQ(snowLine(-46.85), snowLine(46.85));
+  for (double latitude = 0; latitude < 90; latitude += 0.01) {
+    EXPECT_NEAR(snowLine(latitude), snowLine(latitude + 0.01), 3) << latitude;
+  }
+}
+
+TEST(SyntheticColor, summit_is_white_valley_is_green_cliff_is_grey) {
+  const LinearColor summit = at(4000, 0.95), valley = at(700, 0.97), cliff = at(2000, 0.4);
+  EXPECT_GT(summit.red, 0.8);
+  EXPECT_GT(valley.green, 1.5 * valley.red);
+  EXPECT_GT(valley.green, 2 * valley.blue);
+  EXPECT_LT(std::abs(cliff.red - cliff.blue), 0.05);
+}
+
+TEST(SyntheticColor, has_no_steps) {
+  for (const double upness : {0.5, 0.8, 0.99}) {
+    for (double height = 10; height < 5000; height += 1) {
+      EXPECT_NEAR(at(height, upness).green, at(height + 1, upness).green, 0.01) << height << " " << upness;
+    }
+  }
+  for (const double height : {500.0, 1800.0, 2600.0, 4000.0}) {
+    for (double upness = 0; upness < 0.999; upness += 0.001) {
+      EXPECT_NEAR(at(height, upness).green, at(height, upness + 0.001).green, 0.03)
+          << height << " " << upness;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace deltaz

@@ -1,0 +1,39 @@
+// Databases for the tests that draw.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libdb/access/database.h"
+#include "librender/scene/render.h"
+#include "tests/support/memory_file_system.h"
+#include "tests/support/synthetic_grid.h"
+
+namespace deltaz {
+
+// A database in memory and the file system that holds it.
+struct MemoryDatabase {
+  MemoryFileSystem files;
+  Database database;
+};
+
+// Throws std::runtime_error if it cannot be built or opened.
+MemoryDatabase makeDatabase(const SyntheticGridOptions& options, int leaf_cells = 16);
+MemoryDatabase makeDatabaseOf(const RawGrid& grid, int leaf_cells);
+// Of a DEM file; nothing if there is no such file.
+std::optional<MemoryDatabase> databaseOfFile(const std::string& path);
+
+// Rough country near Rainier, 121 x 121 posts of 3 arc-seconds.
+SyntheticGridOptions smallArea();
+
+// Draws; throws std::runtime_error on an error.
+Picture draw(EngineKind kind, const Database& database, const RenderOptions& options,
+             FrameStatistics& statistics);
+Picture draw(EngineKind kind, const Database& database, const RenderOptions& options);
+
+// A camera `above` metres over the ground at a fraction (x, y) of the area, looking along heading and pitch.
+Camera cameraOver(const Database& database, double x, double y, double above, double heading, double pitch,
+                  int width, int height);
+
+}  // namespace deltaz
