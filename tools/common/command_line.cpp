@@ -1,5 +1,6 @@
 #include "tools/common/command_line.h"
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -72,7 +73,10 @@ std::optional<int> parseCommandLine(CLI::App& app, const std::string& tool, int 
 }
 
 void printError(const std::string& tool, const Error& error) {
-  std::cerr << tool << ": error: " << error.message() << '\n';
+  // One error, one line: what other libraries had to say may come with line breaks.
+  std::string message = error.message();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::cerr << tool << ": error: " << message << '\n';
 }
 
 int runTool(const std::string& tool, const std::function<Result<int>()>& body) {

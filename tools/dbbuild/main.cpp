@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
   using namespace deltaz;
   CLI::App app("Builds gaming-area terrain databases from DEMs, and gives the DEM back.", "dbbuild");
   app.set_help_flag("-h,--help", "Print this help and exit");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "Exit codes: 0 done; 1 content refused or damaged; 2 usage, target exists; 3 cannot read, write or "
       "lock;\n"
@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     for (const auto& command : commands) {
       if (command->app().parsed()) return command->run();
     }
-    return internalError("command line", "no command was found in it");
+    return usageError("command line", "a subcommand is required: terrain, info or export", {},
+                      "See 'dbbuild --help'");
   });
 }
