@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "librender/scene/exponential.h"
+
 namespace deltaz {
 namespace {
 
 constexpr double kMolecularHeight = 8000;  // metres
 constexpr double kAerosolHeight =
     kMolecularHeight / 4;                 // so that its density is the fourth power of the other's
-constexpr double kMolecularRed = 5.0e-6;  // 1/m at height 0; green twice, blue four times as much
-constexpr double kAerosol = 1.6e-5;       // 1/m at height 0
-constexpr LinearColor kHaze{0.56, 0.68, 0.84};
-constexpr LinearColor kZenith{0.075, 0.185, 0.470};
+constexpr double kMolecularRed = 2.5e-6;  // 1/m at height 0; green twice, blue four times as much
+constexpr double kAerosol = 2.0e-5;       // 1/m at height 0
+constexpr LinearColor kHaze{0.60, 0.70, 0.82};
+constexpr LinearColor kZenith{0.060, 0.170, 0.480};
 
 // Mean density of a layer between two heights of densities d1, d2, where d = exp(-h / scale).
 double meanDensity(double h1, double d1, double h2, double d2, double scale) {
@@ -35,7 +37,7 @@ Atmosphere::Atmosphere(const EllipsoidShape& ellipsoid, const ViewTransform& vie
   const GeodeticPoint eye = toGeodetic(ellipsoid, view.eye);
   up_ = upVector(rowConstants(ellipsoid, eye.latitude), columnConstants(eye.longitude));
   eye_height_ = heightOf(eye_);
-  eye_density_ = std::exp(-eye_height_ / kMolecularHeight);
+  eye_density_ = exponential(-eye_height_ / kMolecularHeight);
   const double ratio = a / (a + std::max(eye_height_, 0.0));
   sine_of_horizon_ = -std::sqrt(1 - ratio * ratio);
 
@@ -62,15 +64,15 @@ LinearColor Atmosphere::sky(const Vector3& ray) const {
 LinearColor Atmosphere::throughHaze(const LinearColor& color, const Vector3& ray, double u) const {
   const double distance = length(ray) * u;
   const double height = heightOf(eye_ + ray * u);
-  const double density = std::exp(-height / kMolecularHeight);
+  const double density = exponential(-height / kMolecularHeight);
   const double density2 = density * density, eye_density2 = eye_density_ * eye_density_;
   const double molecular =
       kMolecularRed * distance * meanDensity(eye_height_, eye_density_, height, density, kMolecularHeight);
   const double aerosol =
       kAerosol * distance *
       meanDensity(eye_height_, eye_density2 * eye_density2, height, density2 * density2, kAerosolHeight);
-  const double grey = std::exp(-aerosol);
-  const double red = std::exp(-molecular), green = red * red, blue = green * green;
+  const double grey = exponential(-aerosol);
+  const double red = exponential(-molecular), green = red * red, blue = green * green;
   return {haze_color_.red + (color.red - haze_color_.red) * (grey * red),
           haze_color_.green + (color.green - haze_color_.green) * (grey * green),
           haze_color_.blue + (color.blue - haze_color_.blue) * (grey * blue)};

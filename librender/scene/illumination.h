@@ -9,9 +9,9 @@
 namespace deltaz {
 
 struct Light {
-  Vector3 to_sun;        // Earth-centred unit vector
-  double ambient = 0.3;  // k_a
-  double diffuse = 0.9;  // k_d
+  Vector3 to_sun;         // Earth-centred unit vector
+  double ambient = 0.22;  // k_a
+  double diffuse = 1.15;  // k_d
   double intensity(const Vector3& normal) const {
     const double cosine = dot(to_sun, normal);
     return cosine > 0 ? ambient + diffuse * cosine : ambient;

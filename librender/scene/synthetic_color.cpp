@@ -22,12 +22,13 @@ constexpr std::array<SnowLineEntry, 10> kSnowLine = {{{0, 4800},
                                                       {90, 0}}};
 
 constexpr LinearColor kWater{0.020, 0.065, 0.130};
-constexpr LinearColor kLowland{0.150, 0.205, 0.062};
-constexpr LinearColor kForest{0.042, 0.094, 0.026};
-constexpr LinearColor kMeadow{0.150, 0.175, 0.065};
-constexpr LinearColor kScree{0.245, 0.215, 0.180};
-constexpr LinearColor kRock{0.165, 0.145, 0.125};
-constexpr LinearColor kSnow{0.860, 0.890, 0.930};
+constexpr LinearColor kLowland{0.190, 0.235, 0.075};
+constexpr LinearColor kForest{0.048, 0.105, 0.026};
+constexpr LinearColor kUpperForest{0.036, 0.075, 0.030};
+constexpr LinearColor kMeadow{0.190, 0.205, 0.070};
+constexpr LinearColor kScree{0.270, 0.230, 0.190};
+constexpr LinearColor kRock{0.170, 0.145, 0.120};
+constexpr LinearColor kSnow{0.690, 0.715, 0.755};
 
 }  // namespace
 
@@ -47,9 +48,12 @@ LinearColor naturalColor(const SurfacePoint& point) {
   const double height = point.height + 500 * point.poleward;
   const double snow_line = point.snow_line;
 
-  const double lowland_end = 0.16 * snow_line;
-  LinearColor color = mix(kLowland, kForest, smoothStep(0.3 * lowland_end, lowland_end + 60, height));
-  color = mix(color, kMeadow, smoothStep(snow_line - 1050, snow_line - 550, height));
+  // Cleared land in the valleys, where it is level enough; forest, darker with height; meadow, scree.
+  const double lowland_end = 0.30 * snow_line;
+  const double level_ground = smoothStep(0.965, 0.995, point.upness);
+  LinearColor color = mix(kForest, kUpperForest, smoothStep(0.3 * snow_line, 0.7 * snow_line, height));
+  color = mix(color, kLowland, level_ground * (1 - smoothStep(0.5 * lowland_end, lowland_end + 60, height)));
+  color = mix(color, kMeadow, smoothStep(snow_line - 1000, snow_line - 500, height));
   color = mix(color, kScree, smoothStep(snow_line - 500, snow_line - 100, height));
 
   // Trees hold on slopes that meadow and scree do not: the bare angle falls with height, from about 50 to 33

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "librender/scene/exponential.h"
+
 namespace deltaz {
 namespace {
 
@@ -25,6 +27,12 @@ Air airAt(double height, double pitch) {
 double shareKept(const Air& air, const Vector3& ray, double u) {
   const LinearColor black = air.atmosphere.throughHaze({0, 0, 0}, ray, u);
   return 1 - black.green / air.atmosphere.hazeColor().green;
+}
+
+TEST(Exponential, is_that_of_the_library) {
+  for (double x = -690; x < 690; x += 0.37) EXPECT_NEAR(exponential(x) / std::exp(x), 1, 1e-13) << x;
+  EXPECT_EQ(exponential(0), 1);
+  EXPECT_EQ(exponential(-1e9), 0);
 }
 
 TEST(Atmosphere, keeps_near_ground_and_fades_far_ground_at_eye_level) {
@@ -62,8 +70,8 @@ TEST(Atmosphere, optical_depth_is_that_of_exponential_layers) {
   for (int step = 0; step < kSteps; ++step) {
     const double along = distance * (step + 0.5) / kSteps;
     const double h = height + along * std::sin(pitch * std::acos(-1) / 180);
-    molecular += 1.0e-5 * std::exp(-h / 8000) * distance / kSteps;
-    aerosol += 1.6e-5 * std::exp(-h / 2000) * distance / kSteps;
+    molecular += 0.5e-5 * std::exp(-h / 8000) * distance / kSteps;
+    aerosol += 2.0e-5 * std::exp(-h / 2000) * distance / kSteps;
   }
   const Vector3 ray = air.view.ray(air.view.centre_j, air.view.centre_i);
   EXPECT_NEAR(shareKept(air, ray, distance), std::exp(-molecular - aerosol), 2e-4);

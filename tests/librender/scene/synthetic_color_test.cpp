@@ -22,8 +22,8 @@ TEST(SyntheticColor, snow_line_is_high_in_the_tropics_and_at_sea_level_at_the_po
 }
 
 TEST(SyntheticColor, summit_is_white_valley_is_green_cliff_is_grey) {
-  const LinearColor summit = at(4000, 0.95), valley = at(700, 0.97), cliff = at(2000, 0.4);
-  EXPECT_GT(summit.red, 0.8);
+  const LinearColor summit = at(4000, 0.95), valley = at(900, 0.93), cliff = at(2000, 0.4);
+  EXPECT_GT(summit.red, 0.65);
   EXPECT_GT(valley.green, 1.5 * valley.red);
   EXPECT_GT(valley.green, 2 * valley.blue);
   EXPECT_LT(std::abs(cliff.red - cliff.blue), 0.05);
