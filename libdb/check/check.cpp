@@ -29,8 +29,9 @@ Report checkDatabase(const FileSystem& files, const std::string& path, const Che
     context.report.fatal = internalError(path, std::string("the check failed: ") + what);
   };
   try {
-    const int threads = options.threads > 0 ? options.threads : oneapi::tbb::task_arena::automatic;
-    oneapi::tbb::task_arena arena(threads);
+    // More threads than the machine has bring nothing but TBB's complaint on stderr.
+    const int most = oneapi::tbb::info::default_concurrency();
+    oneapi::tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most) : most);
     arena.execute([&] { runRules(context); });
   } catch (const std::exception& exception) {
     failed(exception.what());

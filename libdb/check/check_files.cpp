@@ -1,4 +1,5 @@
 // area.json, the files it lists, and what else lies in the folder.
+#include <algorithm>
 #include <fmt/format.h>
 #include <set>
 #include <string_view>
@@ -48,9 +49,9 @@ bool readArea(CheckContext& context) {
   }
   auto bytes = readWholeFile(context.files, area_path, kMaximumAreaBytes);
   if (!bytes.ok()) return refuse(context, bytes.error(), std::string(kAreaFileName));
-  std::string text;
-  text.reserve(bytes.value().size());
-  for (const std::byte byte : bytes.value()) text.push_back(static_cast<char>(byte));
+  std::string text(bytes.value().size(), '\0');
+  std::transform(bytes.value().begin(), bytes.value().end(), text.begin(),
+                 [](std::byte byte) { return static_cast<char>(byte); });
   context.report.bytes_checked += text.size();
   auto area = parseArea(text, area_path);
   if (!area.ok()) return refuse(context, area.error(), std::string(kAreaFileName));
