@@ -63,7 +63,8 @@ class [[nodiscard]] Result {
     assert(ok());
     return *std::get_if<T>(&state_);
   }
-  T&& value() && {
+  // By value, so that looping over a temporary's value is safe.
+  T value() && {
     assert(ok());
     return std::move(*std::get_if<T>(&state_));
   }

@@ -19,6 +19,7 @@ namespace deltaz {
 inline constexpr std::size_t kNodeRecordBytes = 96;
 inline constexpr std::uint32_t kNodesPerPage = 64;
 inline constexpr std::uint32_t kUnknownError = 0xFFFFFFFF;  // stands for infinity
+inline constexpr std::uint8_t kAreaLevel = 255;  // level of the area's own record
 inline constexpr std::uint32_t kNoBlock = 0xFFFFFFFF;
 
 enum class NodeType : std::uint8_t { kCluster = 0, kTerrain = 1, kColor = 2, kModel = 3 };
@@ -39,7 +40,8 @@ struct NodeRecord {
   std::uint32_t block = kNoBlock;
   std::array<std::int32_t, 3> centroid_offset{};  // from the parent's centroid, Earth-centred, units of kCentroidUnit
   std::uint32_t radius = 0;       // of the sphere around the centroid that holds every post below, kCentroidUnit, rounded up
-  std::int32_t minimum_height = 0, maximum_height = 0;  // of every valid post below, quanta
+  // Of every valid post below: quanta; the area's own record: whole metres, rounded outwards.
+  std::int32_t minimum_height = 0, maximum_height = 0;
   std::array<std::int16_t, 3> mean_normal{};  // Earth-centred unit vector times 32767
   std::uint16_t cone_half_angle = 0;          // units of pi/65535, rounded up: holds every facet normal below
   std::uint32_t geometric_error = kUnknownError;  // kErrorUnit, rounded up

@@ -44,6 +44,21 @@ Result<std::unique_ptr<ContainerReader>> openReferenced(const FileSystem& files,
   return std::make_unique<ContainerReader>(std::move(reader));
 }
 
+// What is wrong with `child` as a child of `parent`; empty if nothing. A tree that passes here has as many nodes as
+// records, however it was damaged.
+std::string faultOfChild(const NodeRecord& parent, const NodeRecord& child, const std::vector<GridHeader>& grids) {
+  if (child.grid >= grids.size()) return "it names a grid that is not there";
+  if (parent.type == NodeType::kTerrain) {
+    const bool below = child.type == NodeType::kTerrain && child.grid == parent.grid && child.level + 1 == parent.level &&
+                       (child.x >> 1) == parent.x && (child.y >> 1) == parent.y;
+    return below ? "" : "its level or place is not below its parent's";
+  }
+  if (child.type == NodeType::kTerrain) {
+    return child.level + 1 == grids[child.grid].level_count ? "" : "its level is not the coarsest of its grid";
+  }
+  return child.level == grids[child.grid].level_count && parent.level == kAreaLevel ? "" : "a cluster stands under a grid";
+}
+
 }  // namespace
 
 double Node::geometricError() const { return errorInMetres(record.geometric_error); }
@@ -139,9 +154,8 @@ Result<std::vector<Node>> Database::children(const Node& parent) const {
       return invalidError(IssueCode::kRefCycle, nodes_->path(), fmt::format("the children of record {} do not end", parent.number));
     }
     DELTAZ_TRY_ASSIGN(const NodeRecord child, record(number));
-    if (child.grid >= area_.grids.size() ||
-        (child.type == NodeType::kTerrain && child.level >= area_.grids[child.grid].level_count)) {
-      return invalidError(IssueCode::kRefRecord, nodes_->path(), fmt::format("record {} names a grid or level that is not there", number));
+    if (const std::string fault = faultOfChild(parent.record, child, area_.grids); !fault.empty()) {
+      return invalidError(IssueCode::kRefChild, nodes_->path(), fmt::format("record {} cannot be a child of record {}", number, parent.number), fault);
     }
     nodes.push_back(makeNode(number, child, parent.centroid_units));
     number = child.sibling;

@@ -28,6 +28,18 @@ inline Vector3 earthCentred(const RowConstants& row, const ColumnConstants& colu
   return {distance * column.cosine, distance * column.sine, row.c + row.s * height};
 }
 
+// What row and column constants change by from one latitude or longitude to another, each to a few units in its own last
+// place, however close the two are: subtracting the constants would leave 1e-9 m of noise, which is as much as the
+// spacing of posts beside a pole.
+struct RowStep {
+  double a = 0, b = 0, c = 0, s = 0;
+};
+struct ColumnStep {
+  double cosine = 0, sine = 0;
+};
+RowStep rowStep(const EllipsoidShape& ellipsoid, double from_degrees, double to_degrees);
+ColumnStep columnStep(double from_degrees, double to_degrees);
+
 // The ellipsoid normal (unit vector, up).
 inline Vector3 upVector(const RowConstants& row, const ColumnConstants& column) {
   return {row.b * column.cosine, row.b * column.sine, row.s};

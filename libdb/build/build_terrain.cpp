@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -26,7 +27,6 @@ namespace {
 constexpr std::uint64_t kSegmentBytes = 64u << 20;
 // Nodes encoded at a time, so that packed blocks never pile up in memory.
 constexpr std::size_t kNodesPerBatch = 512;
-constexpr std::uint8_t kAreaLevel = 255;
 
 // Calls work(i) for 0 <= i < count on the threads of `arena`; the order must not matter.
 template <typename Work>
@@ -52,7 +52,8 @@ class TerrainBuild {
  public:
   TerrainBuild(const FileSystem& files, const RawGrid& grid, const BuildOptions& options)
       : files_(files), grid_(grid), options_(options), header_(grid.header), geometry_(makeHeader(grid, options)),
-        arena_(options.threads > 0 ? options.threads : tbb::task_arena::automatic) {
+        // More threads than the machine has would only wait for each other.
+        arena_(options.threads > 0 ? std::min(options.threads, tbb::info::default_concurrency()) : tbb::task_arena::automatic) {
     plan_ = planPyramid(geometry_);
     header_ = geometry_.header();
     header_.level_count = plan_.level_count;

@@ -21,7 +21,7 @@ struct BuildOptions {
   bool overwrite = false;  // replace an existing deltaz database (never anything else)
   int threads = 0;         // 0: as many as the machine has
   // Called from time to time with a phase name and the fraction done (0 .. 1, never falling); may be empty.
-  std::function<void(std::string_view phase, double fraction)> progress;
+  std::function<void(std::string_view phase, double fraction)> progress = {};
 };
 
 struct BuildSummary {

@@ -32,7 +32,8 @@ class Publication {
   std::string newFilePath(const std::string& name);
   // Number of this state of the database; part of the names of its files.
   std::uint64_t generation() const { return generation_; }
-  // Writes area.json and makes it all durable and visible. Sets area.generation. Once.
+  // Writes area.json and makes it all durable and visible. Sets area.generation. Once. If the very last step, syncing
+  // the folder the target stands in, fails, the error says so although the target is there and complete.
   Status publish(AreaHeader& area);
 
  private:

@@ -102,9 +102,14 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
     grid.header.longitude = axisAt(grid.header.longitude, columns, level);
     grid.header.latitude = axisAt(grid.header.latitude, rows, level);
   }
+  DELTAZ_TRY_ASSIGN(const std::vector<Node> nodes, nodesOfLevel(database, grid_number, level));
+  // A damaged header must not make us ask for more memory than the nodes could fill.
+  const std::int64_t posts_per_node = std::int64_t{geometry.header().leaf_cells + 1} * (geometry.header().leaf_cells + 1);
+  if (columns.size() > static_cast<std::int64_t>(nodes.size()) * posts_per_node / rows.size()) {
+    return invalidError(IssueCode::kRefUnreachable, database.path(), fmt::format("level {} does not cover the area", level));
+  }
   grid.heights.assign(static_cast<std::size_t>(columns.size() * rows.size()), 0);
   std::vector<std::uint8_t> valid(grid.heights.size(), 0);
-  DELTAZ_TRY_ASSIGN(const std::vector<Node> nodes, nodesOfLevel(database, grid_number, level));
   std::uint64_t posts = 0;
   for (const Node& node : nodes) {
     DELTAZ_TRY_ASSIGN(const TerrainTile tile, database.terrain(node));

@@ -1,0 +1,105 @@
+#include "libdb/build/publication.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libdb/access/database.h"
+#include "libdb/build/build_terrain.h"
+#include "tests/support/synthetic_grid.h"
+
+namespace deltaz {
+namespace {
+
+RawGrid gridOfSeed(std::uint32_t seed) {
+  SyntheticGridOptions options;
+  options.seed = seed;
+  options.columns = options.rows = 40;
+  return syntheticGrid(options);
+}
+
+std::int32_t firstHeight(const FileSystem& files) {
+  Result<Database> database = Database::open(files, kMemoryDatabasePath);
+  EXPECT_TRUE(database.ok()) << database.error().message();
+  const Result<std::vector<Node>> leaves = nodesOfLevel(database.value(), 0, 0);
+  return database.value().terrain(leaves.value().front()).value().height(0, 0);
+}
+
+TEST(Publication, an_existing_target_is_kept_unless_overwriting) {
+  MemoryFileSystem files = buildInMemory(gridOfSeed(1));
+  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(firstHeight(files), gridOfSeed(1).height(0, 0));
+
+  ASSERT_TRUE(buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true}).ok());
+  EXPECT_EQ(firstHeight(files), gridOfSeed(2).height(0, 0));
+  EXPECT_EQ(Database::open(files, kMemoryDatabasePath).value().area().generation, 2u);
+  // Nothing of the old state is left behind.
+  EXPECT_EQ(files.list(kMemoryDatabasePath).value().size(), 4u);
+}
+
+TEST(Publication, a_reader_that_opened_before_an_overwrite_keeps_its_state) {
+  MemoryFileSystem files = buildInMemory(gridOfSeed(1));
+  Result<Database> old_state = Database::open(files, kMemoryDatabasePath);
+  ASSERT_TRUE(old_state.ok());
+  ASSERT_TRUE(buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true}).ok());
+  const Result<std::vector<Node>> leaves = nodesOfLevel(old_state.value(), 0, 0);
+  ASSERT_TRUE(leaves.ok()) << leaves.error().message();
+  EXPECT_EQ(old_state.value().terrain(leaves.value().front()).value().height(0, 0), gridOfSeed(1).height(0, 0));
+}
+
+TEST(Publication, what_is_not_a_database_is_never_overwritten) {
+  MemoryFileSystem files;
+  ASSERT_TRUE(files.makeDirectory("/folder").ok());
+  ASSERT_TRUE(files.makeDirectory(kMemoryDatabasePath).ok());
+  files.setBytes(kMemoryDatabasePath + "/precious.txt", {std::byte{1}});
+  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {.overwrite = true});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(files.list(kMemoryDatabasePath).value(), std::vector<std::string>{"precious.txt"});
+  files.setBytes(kMemoryDatabasePath + "/area.json", {std::byte{'{'}, std::byte{'}'}});
+  EXPECT_FALSE(buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {.overwrite = true}).ok());
+}
+
+TEST(Publication, a_damaged_database_may_be_overwritten) {
+  MemoryFileSystem files = buildInMemory(gridOfSeed(1));
+  auto area = files.bytes(kMemoryDatabasePath + "/area.json");
+  area[area.size() / 2] ^= std::byte{1};
+  files.setBytes(kMemoryDatabasePath + "/area.json", area);
+  ASSERT_TRUE(buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true}).ok());
+  EXPECT_EQ(firstHeight(files), gridOfSeed(2).height(0, 0));
+}
+
+TEST(Publication, a_second_writer_is_turned_away) {
+  MemoryFileSystem files = buildInMemory(gridOfSeed(1));
+  const auto held = files.lock(kMemoryDatabasePath + "/lock");
+  ASSERT_TRUE(held.ok());
+  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kCannotAccess);
+}
+
+TEST(Publication, left_over_folders_of_dead_builds_are_swept_and_those_of_living_ones_kept) {
+  MemoryFileSystem files;
+  ASSERT_TRUE(files.makeDirectory("/folder").ok());
+  for (const char* const name : {"/folder/.area.dz.tmp-1", "/folder/.area.dz.tmp-2"}) {
+    ASSERT_TRUE(files.makeDirectory(name).ok());
+    files.setBytes(std::string(name) + "/nodes-000001.dzn", {std::byte{1}});
+  }
+  const auto living = files.lock("/folder/.area.dz.tmp-2/lock");
+  ASSERT_TRUE(living.ok());
+  ASSERT_TRUE(buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {}).ok());
+  EXPECT_EQ(files.list("/folder").value(), (std::vector<std::string>{".area.dz.tmp-2", "area.dz"}));
+}
+
+TEST(Publication, a_missing_folder_is_named) {
+  const MemoryFileSystem files;
+  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(1), "/nowhere/area.dz", {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kCannotAccess);
+  EXPECT_NE(refused.error().message().find("/nowhere"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace deltaz

@@ -1,0 +1,74 @@
+#include "libdb/export/export_terrain.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "libdb/build/build_terrain.h"
+#include "tests/support/synthetic_grid.h"
+#include "tests/support/temporary_directory.h"
+
+namespace deltaz {
+namespace {
+
+Database openSample(const MemoryFileSystem& files) {
+  Result<Database> database = Database::open(files, kMemoryDatabasePath);
+  EXPECT_TRUE(database.ok());
+  return std::move(database).value();
+}
+
+TEST(ExportTerrain, the_exported_file_reads_as_the_same_grid) {
+  SyntheticGridOptions options;
+  options.voids = VoidPattern::kHole;
+  const RawGrid grid = syntheticGrid(options);
+  const MemoryFileSystem files = buildInMemory(grid);
+  const TemporaryDirectory folder;
+  const Status exported = exportTerrain(openSample(files), folder.file("dem.tif"), {});
+  ASSERT_TRUE(exported.ok()) << exported.error().message();
+  const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back.value().header.longitude, grid.header.longitude);
+  EXPECT_EQ(back.value().header.latitude, grid.header.latitude);
+  EXPECT_EQ(back.value().header.quantum, grid.header.quantum);
+  EXPECT_EQ(back.value().header.sources[0].geotransform, grid.header.sources[0].geotransform);
+  EXPECT_EQ(back.value().header.sources[0].data_type, grid.header.sources[0].data_type);
+  for (std::int64_t row = 0; row < grid.header.latitude.count; ++row) {
+    for (std::int64_t column = 0; column < grid.header.longitude.count; ++column) {
+      ASSERT_EQ(back.value().isValid(column, row), grid.isValid(column, row));
+      if (grid.isValid(column, row)) {
+        ASSERT_EQ(back.value().height(column, row), grid.height(column, row));
+      }
+    }
+  }
+}
+
+TEST(ExportTerrain, a_coarser_level_keeps_its_posts_in_place) {
+  const RawGrid grid = syntheticGrid();
+  const MemoryFileSystem files = buildInMemory(grid, {.leaf_cells = 16});
+  const TemporaryDirectory folder;
+  ASSERT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {.level = 2}).ok());
+  const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  const GridGeometry fine(grid.header), coarse(back.value().header);
+  const std::int64_t first = grid.header.longitude.first;
+  const std::int64_t skipped = ceilDivide(first, 4) * 4 - first;
+  EXPECT_NEAR(coarse.longitude(back.value().header.longitude.first), fine.longitude(first + skipped), 1e-10);
+  EXPECT_EQ(back.value().height(0, 0), grid.height(skipped, ceilDivide(grid.header.latitude.first, 4) * 4 - grid.header.latitude.first));
+}
+
+TEST(ExportTerrain, an_existing_file_is_kept_unless_overwriting) {
+  const MemoryFileSystem files = buildInMemory(syntheticGrid());
+  const TemporaryDirectory folder;
+  ASSERT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {}).ok());
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("dem.tif"), {}).error().kind, ErrorKind::kUsage);
+  EXPECT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {.overwrite = true}).ok());
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("none/dem.tif"), {}).error().kind, ErrorKind::kCannotAccess);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.path(), {.overwrite = true}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.grid = 1}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.level = 9}).error().kind, ErrorKind::kUsage);
+  // Nothing but the one file: no temporary one is left.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace deltaz

@@ -1,0 +1,177 @@
+#include "libdb/source/elevation_source.h"
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "tests/support/temporary_directory.h"
+
+namespace deltaz {
+namespace {
+
+struct RasterOptions {
+  GDALDataType type = GDT_Int16;
+  int bands = 1;
+  std::array<double, 6> transform = {-80.5 / 3600, 1.0 / 3600, 0, 43.5 / 3600, 0, -1.0 / 3600};
+  std::string crs = "EPSG:4326";
+  bool georeferenced = true;
+  std::function<void(GDALDataset&)> change;
+};
+
+// A GeoTIFF of 5 x 4 posts, height 10 * row from the north + column.
+std::string makeRaster(const TemporaryDirectory& folder, const RasterOptions& options = {}) {
+  GDALAllRegister();
+  const std::string path = folder.file("dem.tif");
+  GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 5, 4, options.bands, options.type, nullptr));
+  if (options.georeferenced) {
+    std::array<double, 6> transform = options.transform;
+    dataset->SetGeoTransform(transform.data());
+  }
+  if (!options.crs.empty()) {
+    OGRSpatialReference reference;
+    reference.SetFromUserInput(options.crs.c_str());
+    dataset->SetSpatialRef(&reference);
+  }
+  std::vector<std::int32_t> heights;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 5; ++column) heights.push_back(10 * row + column);
+  }
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 5, 4, heights.data(), 5, 4, GDT_Int32, 0, 0, nullptr), CE_None);
+  if (options.change) options.change(*dataset);
+  return path;
+}
+
+Error refusal(const RasterOptions& options) {
+  const TemporaryDirectory folder;
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+  if (grid.ok()) {
+    ADD_FAILURE() << "accepted";
+    return {};
+  }
+  return grid.error();
+}
+
+TEST(ElevationSource, posts_are_pixel_centres_for_both_registrations) {
+  for (const char* const registration : {"Area", "Point"}) {
+    const TemporaryDirectory folder;
+    RasterOptions options;
+    options.change = [&](GDALDataset& dataset) { dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, registration); };
+    const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+    ASSERT_TRUE(grid.ok()) << grid.error().message();
+    EXPECT_EQ(grid.value().header.longitude.first, 180 * 3600 - 80);
+    EXPECT_EQ(grid.value().header.longitude.phase, 0);
+    EXPECT_EQ(grid.value().header.latitude.first, 90 * 3600 + 40);
+    EXPECT_EQ(grid.value().height(0, 0), 30) << "row 0 is the southern one";
+    EXPECT_EQ(grid.value().height(4, 3), 4);
+    EXPECT_EQ(grid.value().header.sources[0].point_registered, registration[0] == 'P');
+  }
+}
+
+TEST(ElevationSource, south_up_rasters_are_turned) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.transform = {-80.5 / 3600, 1.0 / 3600, 0, 39.5 / 3600, 0, 1.0 / 3600};
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+  ASSERT_TRUE(grid.ok());
+  EXPECT_EQ(grid.value().height(0, 0), 0);
+  EXPECT_EQ(grid.value().header.latitude.first, 90 * 3600 + 40);
+}
+
+TEST(ElevationSource, the_declared_sentinel_becomes_void) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(22); };
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+  ASSERT_TRUE(grid.ok());
+  EXPECT_FALSE(grid.value().isValid(2, 1));
+  EXPECT_TRUE(grid.value().isValid(2, 2));
+  EXPECT_EQ(grid.value().header.sources[0].nodata, 22);
+}
+
+TEST(ElevationSource, feet_are_an_exact_quantum) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetUnitType("ft"); };
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+  ASSERT_TRUE(grid.ok());
+  EXPECT_EQ(grid.value().header.quantum, (Rational{381, 1250}));
+}
+
+TEST(ElevationSource, other_ellipsoids_are_kept) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.crs = "EPSG:4267";  // NAD27, Clarke 1866
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
+  ASSERT_TRUE(grid.ok());
+  EXPECT_EQ(grid.value().header.ellipsoid.semi_major_axis, 6378206.4);
+}
+
+TEST(ElevationSource, what_is_not_read_is_refused_with_the_reason) {
+  RasterOptions options;
+  options.transform[2] = 1e-5;
+  EXPECT_NE(refusal(options).message().find("rotated"), std::string::npos);
+  options = {};
+  options.crs = "EPSG:32610";
+  EXPECT_NE(refusal(options).message().find("projected"), std::string::npos);
+  options = {};
+  options.type = GDT_Float32;
+  EXPECT_NE(refusal(options).message().find("Float32"), std::string::npos);
+  options = {};
+  options.bands = 3;
+  EXPECT_NE(refusal(options).message().find("3 bands"), std::string::npos);
+  options = {};
+  options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetScale(0.1); };
+  EXPECT_NE(refusal(options).message().find("scales"), std::string::npos);
+  options = {};
+  options.change = [](GDALDataset& dataset) {
+    dataset.GetRasterBand(1)->SetNoDataValue(7);
+    dataset.GetRasterBand(1)->Fill(7);
+  };
+  EXPECT_NE(refusal(options).message().find("every post is void"), std::string::npos);
+}
+
+TEST(ElevationSource, a_row_on_the_pole_is_accepted_and_one_beyond_refused) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.transform = {0, 1, 0, 90.5, 0, -1};
+  EXPECT_TRUE(readElevationSource(makeRaster(folder, options), {}).ok());
+  options.transform[3] = 91.5;
+  EXPECT_NE(refusal(options).message().find("latitude"), std::string::npos);
+}
+
+TEST(ElevationSource, a_source_without_crs_wants_one) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.crs.clear();
+  const std::string path = makeRaster(folder, options);
+  const Result<RawGrid> refused = readElevationSource(path, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message().find("--crs"), std::string::npos);
+  EXPECT_TRUE(readElevationSource(path, {.crs = "EPSG:4326"}).ok());
+  EXPECT_EQ(readElevationSource(path, {.crs = "EPSG:no"}).error().kind, ErrorKind::kUsage);
+}
+
+TEST(ElevationSource, missing_empty_and_foreign_files_are_told_apart) {
+  const TemporaryDirectory folder;
+  EXPECT_EQ(readElevationSource(folder.file("none.tif"), {}).error().kind, ErrorKind::kCannotAccess);
+  std::ofstream(folder.file("empty.tif")).close();
+  EXPECT_NE(readElevationSource(folder.file("empty.tif"), {}).error().message().find("empty"), std::string::npos);
+  std::ofstream(folder.file("text.tif")) << "This is not a raster.\n";
+  EXPECT_EQ(readElevationSource(folder.file("text.tif"), {}).error().kind, ErrorKind::kInvalid);
+  EXPECT_EQ(readElevationSource(folder.path(), {}).error().kind, ErrorKind::kInvalid);
+}
+
+TEST(ElevationSource, a_file_cut_short_is_refused) {
+  const TemporaryDirectory folder;
+  const std::string path = makeRaster(folder);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
+  EXPECT_FALSE(readElevationSource(path, {}).ok());
+}
+
+}  // namespace
+}  // namespace deltaz
