@@ -46,8 +46,10 @@ void addAxis(DigestBytes& bytes, const GridAxis& axis) {
 }
 
 void addGrid(DigestBytes& bytes, const GridHeader& grid) {
+  // Not the text of the reference system, which has many spellings of one meaning: datum, ellipsoid and axes
+  // say where the posts are.
   for (const std::string& text :
-       {grid.kind, grid.crs_wkt, grid.horizontal_datum, grid.vertical_datum, grid.unit, grid.diagonal}) {
+       {grid.kind, grid.horizontal_datum, grid.vertical_datum, grid.unit, grid.diagonal}) {
     bytes.add(text);
   }
   bytes.add(grid.ellipsoid.semi_major_axis);

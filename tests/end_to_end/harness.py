@@ -105,8 +105,8 @@ def real_files():
     return files
 
 
-def small_dem(folder, name="small.asc", columns=40, rows=30, void=True):
-    """A DEM of a few posts with a CRS beside it, quick to build; returns a GeoTIFF."""
+def small_dem(folder, name="small.asc", columns=40, rows=30, void=True, system="EPSG:4326"):
+    """A DEM of a few posts, quick to build; returns a GeoTIFF, without CRS where `system` is empty."""
     lines = [f"ncols {columns}", f"nrows {rows}", "xllcorner 7.0", "yllcorner 46.0", "cellsize 0.01", "NODATA_value -9999"]
     for row in range(rows):
         heights = [-9999 if void and row == 3 and 5 <= column < 9 else (row * 37 + column * column) % 900 for column in range(columns)]
@@ -114,7 +114,7 @@ def small_dem(folder, name="small.asc", columns=40, rows=30, void=True):
     text = folder / name
     text.write_text("\n".join(lines) + "\n")
     target = text.with_suffix(".tif")
-    gdal("gdal_translate", "-q", "-ot", "Int16", "-a_srs", "EPSG:4326", text, target)
+    gdal("gdal_translate", "-q", "-ot", "Int16", *(["-a_srs", system] if system else []), text, target)
     return target
 
 

@@ -162,6 +162,7 @@ def depth_leads_back_to_the_ground(folder):
     view = strict_json(info["metadata"][""]["TIFFTAG_IMAGEDESCRIPTION"])
     gdal("gdal_translate", "-q", "-of", "EHdr", depth, folder / "depth.bil")
     values = struct.unpack("<4800f", (folder / "depth.bil").read_bytes())
+    lowest = run("dbbuild", "info", area, "--json").json()["lowest_height"]
     compared = 0
     for i in range(5, 60, 13):
         for j in range(5, 80, 13):
@@ -172,6 +173,8 @@ def depth_leads_back_to_the_ground(folder):
                    view["down"][k] * (i - view["centre_i"]) / view["pixels"] for k in range(3)]
             point = [view["eye"][k] + u * ray[k] for k in range(3)]
             latitude, longitude, height = geodetic(point, view["semi_major_axis"], 1 / view["inverse_flattening"])
+            if height < lowest - 0.01:
+                continue  # the sea, seen through a void
             # The ground there, asked of the database another way: an eye exactly on it.
             run("dbview", area, "-o", folder / "y.png", "--eye", f"{latitude!r},{longitude!r},0agl", "--look", "0,0", "--size", "2x2",
                 "--stats", folder / "y.json", "--overwrite")

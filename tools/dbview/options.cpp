@@ -108,6 +108,7 @@ Status placeCamera(const Database& database, const ViewOptions& options, View& v
   Camera& camera = view.render.camera;
   if (options.eye.empty()) {
     camera = wholeAreaCamera(database.area(), camera.width, camera.height, camera.field_of_view);
+    if (camera.heading == 0) camera.heading = 0;  // a negative zero would be printed as one
     return Success{};
   }
   DELTAZ_TRY_ASSIGN(const EyePosition eye, parseEye(options.eye, "--eye"));
