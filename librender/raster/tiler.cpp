@@ -32,7 +32,7 @@ class NodeBins {
 
     // Counting sort by tile; it keeps the order within each.
     begin_.assign(binOf(tiles_.last_j, tiles_.last_i) + 2, 0);
-    const auto forEachEntry = [&](auto&& act) {
+    const auto for_each_entry = [&](auto&& act) {
       for (std::uint32_t index = 0; index < touched.size(); ++index) {
         const SampleBounds& t = touched[index];
         for (std::int32_t i = t.first_i; i <= t.last_i; ++i) {
@@ -40,11 +40,11 @@ class NodeBins {
         }
       }
     };
-    forEachEntry([&](std::size_t bin, std::uint32_t) { ++begin_[bin + 1]; });
+    for_each_entry([&](std::size_t bin, std::uint32_t) { ++begin_[bin + 1]; });
     for (std::size_t bin = 1; bin < begin_.size(); ++bin) begin_[bin] += begin_[bin - 1];
     entries_.resize(begin_.back());
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    forEachEntry([&](std::size_t bin, std::uint32_t index) { entries_[next[bin]++] = index; });
+    for_each_entry([&](std::size_t bin, std::uint32_t index) { entries_[next[bin]++] = index; });
   }
 
   template <typename Visit>

@@ -74,7 +74,7 @@ Result<Displacement> measureDisplacement(const Database& database, const Camera&
     DELTAZ_TRY_ASSIGN(const std::vector<Node> nodes, nodesOfLevel(database, grid, grid_level));
 
     // The posts of one face of the cell whose south-west post is (column, row) at full resolution.
-    const auto measureFace = [&](std::int64_t column, std::int64_t row, bool top) {
+    const auto measure_face = [&](std::int64_t column, std::int64_t row, bool top) {
       const auto corner = [&](std::int64_t di, std::int64_t dj) {
         return toEarthCentred(ellipsoid, {geometry.latitude(row + dj), geometry.longitude(column + di),
                                           geometry.metres(full.height(column + di, row + dj))});
@@ -107,8 +107,8 @@ Result<Displacement> measureDisplacement(const Database& database, const Camera&
       for (int j = 0; j + 1 < tile.rows; ++j) {
         for (int i = 0; i + 1 < tile.columns; ++i) {
           const std::int64_t column = (tile.first_column + i) * step, row = (tile.first_row + j) * step;
-          if (tile.bottomFaceValid(i, j)) measureFace(column, row, false);
-          if (tile.topFaceValid(i, j)) measureFace(column, row, true);
+          if (tile.bottomFaceValid(i, j)) measure_face(column, row, false);
+          if (tile.topFaceValid(i, j)) measure_face(column, row, true);
         }
       }
     }

@@ -11,7 +11,7 @@ struct Displacement {
   double largest_pixels = 0;
   double largest_metres = 0;  // along the ellipsoid normal, over the same posts
   double mean_square_pixels = 0;
-  std::uint64_t posts = 0;  // full-resolution posts in view that a face of the level covers
+  std::uint64_t posts = 0;  // full-resolution posts looked at, once for each face that covers them
 };
 
 // Over all full-resolution posts P in the picture that a valid face of level `level` covers: the distance on

@@ -158,8 +158,8 @@ Picture finish(const std::vector<Sample>& samples, const Environment& environmen
   for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
     const Sample& sample = samples[pixel];
     const auto width = static_cast<std::size_t>(picture.width);
-    const Vector3 ray =
-        environment.view.ray(static_cast<double>(pixel % width), static_cast<double>(pixel / width));
+    const std::size_t j = pixel % width, i = pixel / width;
+    const Vector3 ray = environment.view.ray(static_cast<double>(j), static_cast<double>(i));
     const double sea_u = environment.sea.depth(ray);
     const double terrain_u = 1 / sample.inverse_u;  // infinite where there is none
     covered += sample.inverse_u > 0;

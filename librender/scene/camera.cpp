@@ -103,7 +103,7 @@ Camera wholeAreaCamera(const AreaHeader& area, int width, int height, double fie
 
   // The camera at `distance` from the centre whose pitch puts the outline in the middle of the picture's
   // height. `fits` says whether the outline is inside the margin.
-  const auto cameraAt = [&](double distance, bool& fits) {
+  const auto camera_at = [&](double distance, bool& fits) {
     const Vector3 eye = target + backward * distance;
     Camera camera;
     camera.eye = toGeodetic(ellipsoid, eye);
@@ -129,15 +129,15 @@ Camera wholeAreaCamera(const AreaHeader& area, int width, int height, double fie
 
   bool fits = false;
   double near = 0, far = 1;
-  Camera camera = cameraAt(far, fits);
+  Camera camera = camera_at(far, fits);
   for (int doubling = 0; doubling < 40 && !fits; ++doubling) {
     near = far;
     far *= 2;
-    camera = cameraAt(far, fits);
+    camera = camera_at(far, fits);
   }
   for (int step = 0; step < kBisections && far - near > 1e-3; ++step) {
     const double middle = (near + far) / 2;
-    const Camera candidate = cameraAt(middle, fits);
+    const Camera candidate = camera_at(middle, fits);
     if (fits) camera = candidate;
     (fits ? far : near) = middle;
   }
