@@ -1,0 +1,78 @@
+// A database of every released format version is kept for ever in tests/golden, and this version reads all of them.
+#include <gtest/gtest.h>
+
+#include "libdb/access/content_digest.h"
+#include "libdb/access/database.h"
+#include "libdb/check/check.h"
+#include "libdb/export/export_terrain.h"
+#include "tests/support/synthetic_grid.h"
+
+namespace deltaz {
+namespace {
+
+// What the golden databases hold.
+RawGrid goldenGrid() {
+  SyntheticGridOptions options;
+  options.columns = 40;
+  options.rows = 30;
+  options.voids = VoidPattern::kHole;
+  return syntheticGrid(options);
+}
+
+const std::string kVersion1 = DELTAZ_GOLDEN "/version_1.dz";
+
+TEST(Golden, version_1_reads_post_for_post) {
+  Result<Database> database = Database::open(localFileSystem(), kVersion1);
+  ASSERT_TRUE(database.ok()) << database.error().message();
+  const Result<RawGrid> grid = readGrid(database.value(), 0, 0);
+  ASSERT_TRUE(grid.ok()) << grid.error().message();
+  const RawGrid expected = goldenGrid();
+  ASSERT_EQ(grid.value().heights.size(), expected.heights.size());
+  for (std::int64_t row = 0; row < expected.header.latitude.count; ++row) {
+    for (std::int64_t column = 0; column < expected.header.longitude.count; ++column) {
+      ASSERT_EQ(grid.value().isValid(column, row), expected.isValid(column, row));
+      if (expected.isValid(column, row)) {
+        ASSERT_EQ(grid.value().height(column, row), expected.height(column, row));
+      }
+    }
+  }
+}
+
+TEST(Golden, version_1_is_valid) {
+  const RawGrid source = goldenGrid();
+  CheckOptions options;
+  options.against = &source;
+  const Report report = checkDatabase(localFileSystem(), kVersion1, options);
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.count(Severity::kError), 0u);
+}
+
+// Errors, bounds, normals' definition and topology enter the digest: a change in any of them is a change of what
+// databases say, and must be meant.
+TEST(Golden, version_1_and_a_fresh_build_say_the_same) {
+  Result<Database> golden = Database::open(localFileSystem(), kVersion1);
+  ASSERT_TRUE(golden.ok());
+  const MemoryFileSystem files = buildInMemory(goldenGrid(), {.leaf_cells = 8});
+  Result<Database> fresh = Database::open(files, kMemoryDatabasePath);
+  ASSERT_TRUE(fresh.ok());
+  const Result<Hash128> golden_digest = contentDigest(golden.value());
+  const Result<Hash128> fresh_digest = contentDigest(fresh.value());
+  ASSERT_TRUE(golden_digest.ok() && fresh_digest.ok());
+  EXPECT_EQ(toHex(golden_digest.value()), toHex(fresh_digest.value()));
+}
+
+// The bytes themselves, but for what the compressor's version decides.
+TEST(Golden, version_1_nodes_are_the_same_bytes) {
+  Result<Database> golden = Database::open(localFileSystem(), kVersion1);
+  ASSERT_TRUE(golden.ok());
+  const MemoryFileSystem files = buildInMemory(goldenGrid(), {.leaf_cells = 8});
+  Result<Database> fresh = Database::open(files, kMemoryDatabasePath);
+  ASSERT_TRUE(fresh.ok());
+  ASSERT_EQ(golden.value().area().node_count, fresh.value().area().node_count);
+  for (std::uint32_t number = 1; number <= golden.value().area().node_count; ++number) {
+    EXPECT_EQ(golden.value().record(number).value(), fresh.value().record(number).value()) << number;
+  }
+}
+
+}  // namespace
+}  // namespace deltaz
