@@ -1,9 +1,8 @@
 #include "formats/area.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -25,11 +24,15 @@ constexpr std::int64_t kMaximumPostIndex = std::int64_t{1} << 40;
 constexpr std::int64_t kMaximumPostCount = std::int64_t{1} << 31;
 constexpr int kMaximumLevels = 32;
 
-std::span<const std::byte> asBytes(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+std::span<const std::byte> asBytes(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 // ---- values to JSON
 
-Json toJson(const Rational& value) { return Json::array({value.numerator, value.denominator}); }
+Json toJson(const Rational& value) {
+  return Json::array({value.numerator, value.denominator});
+}
 
 Json toJson(const GridAxis& axis) {
   Json json;
@@ -92,7 +95,8 @@ Json toJson(const FileReference& file) {
 // Reads the members of one object and remembers the first thing wrong.
 class Members {
  public:
-  Members(const Json& json, std::string path, std::string& fault) : json_(json), path_(std::move(path)), fault_(fault) {
+  Members(const Json& json, std::string path, std::string& fault)
+      : json_(json), path_(std::move(path)), fault_(fault) {
     if (!json_.is_object()) fail("", "is not an object");
   }
 
@@ -140,7 +144,8 @@ class Members {
     static const Json kEmpty = Json::array();
     const Json* value = find(name);
     if (value == nullptr) return kEmpty;
-    if (!value->is_array() || value->size() < least || value->size() > most) return fail(name, "is not an array of the right size"), kEmpty;
+    if (!value->is_array() || value->size() < least || value->size() > most)
+      return fail(name, "is not an array of the right size"), kEmpty;
     return *value;
   }
   Hash128 hash(const char* name) {
@@ -195,7 +200,8 @@ SourceDescription readSource(const Json& json, const std::string& path, std::str
     source.geotransform[i] = members.numberOf(geotransform[i], "geotransform", -1e12, 1e12);
   }
   const std::string registration = members.text("registration");
-  if (registration != "area" && registration != "point") members.fail("registration", "is neither area nor point");
+  if (registration != "area" && registration != "point")
+    members.fail("registration", "is neither area nor point");
   source.point_registered = registration == "point";
   source.data_type = members.text("data_type");
   if (const Json* nodata = members.find("nodata"); nodata != nullptr && !nodata->is_null()) {
@@ -223,11 +229,13 @@ GridHeader readGrid(const Json& json, const std::string& path, std::string& faul
   }
   grid.unit = members.text("unit");
   if (grid.unit != "metre") members.fail("unit", "is not metre");
-  if (const Json* quantum = members.find("quantum"); quantum != nullptr) grid.quantum = members.rationalOf(*quantum, "quantum");
+  if (const Json* quantum = members.find("quantum"); quantum != nullptr)
+    grid.quantum = members.rationalOf(*quantum, "quantum");
   grid.longitude = readAxis(members.object("longitude"), 360);
   grid.latitude = readAxis(members.object("latitude"), 180);
   grid.leaf_cells = static_cast<int>(members.integer("leaf_cells", 8, kMaximumLeafCells));
-  if (!std::has_single_bit(static_cast<unsigned>(grid.leaf_cells))) members.fail("leaf_cells", "is not a power of two");
+  if (!std::has_single_bit(static_cast<unsigned>(grid.leaf_cells)))
+    members.fail("leaf_cells", "is not a power of two");
   grid.level_count = static_cast<int>(members.integer("levels", 1, kMaximumLevels));
   grid.normal_exponent = static_cast<int>(members.integer("normal_exponent", 2, 2));
   grid.diagonal = members.text("diagonal");
@@ -269,7 +277,8 @@ AreaHeader readArea(const Json& json, std::string& fault) {
   if (!(area.east > area.west) || !(area.north > area.south)) bounds.fail("", "are empty");
   const Json& centroid = members.array("centroid", 3, 3);
   for (std::size_t i = 0; i < centroid.size(); ++i) {
-    area.centroid[i] = members.integerOf(centroid[i], "centroid", -(std::int64_t{1} << 40), std::int64_t{1} << 40);
+    area.centroid[i] =
+        members.integerOf(centroid[i], "centroid", -(std::int64_t{1} << 40), std::int64_t{1} << 40);
   }
   Members heights = members.object("heights");
   area.lowest_height = heights.number("lowest", -1e9, 1e9);
@@ -280,9 +289,11 @@ AreaHeader readArea(const Json& json, std::string& fault) {
   area.node_count = static_cast<std::uint32_t>(nodes.integer("count", 1, UINT32_MAX));
   area.nodes_per_page = static_cast<std::uint32_t>(nodes.integer("per_page", kNodesPerPage, kNodesPerPage));
   const Json& grids = members.array("grids", 1, 1 << 16);
-  for (std::size_t i = 0; i < grids.size(); ++i) area.grids.push_back(readGrid(grids[i], fmt::format("grids[{}].", i), fault));
+  for (std::size_t i = 0; i < grids.size(); ++i)
+    area.grids.push_back(readGrid(grids[i], fmt::format("grids[{}].", i), fault));
   const Json& files = members.array("files", 1, 1 << 20);
-  for (std::size_t i = 0; i < files.size(); ++i) area.files.push_back(readFile(files[i], fmt::format("files[{}].", i), fault));
+  for (std::size_t i = 0; i < files.size(); ++i)
+    area.files.push_back(readFile(files[i], fmt::format("files[{}].", i), fault));
   Members provenance = members.object("provenance");
   area.tool_version = provenance.text("tool");
   if (const Json* options = provenance.find("options"); options != nullptr) {
@@ -319,7 +330,8 @@ std::string serializeArea(const AreaHeader& area) {
   Json options = Json::object();
   for (const auto& [name, value] : area.options) options[name] = value;
   json["provenance"] = {{"tool", area.tool_version}, {"options", options}};
-  // A file name that is not UTF-8 must not make a database unreadable: its odd bytes become replacement characters.
+  // A file name that is not UTF-8 must not make a database unreadable: its odd bytes become replacement
+  // characters.
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.size() - 2);  // without the closing "\n}"
   const std::string hash = toHex(hash128(asBytes(text)));
@@ -334,8 +346,8 @@ Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
     if (text.find(kFormatName) == std::string_view::npos) {
       return invalidError(IssueCode::kManSyntax, where, "this is not the header of a deltaz database");
     }
-    return invalidError(IssueCode::kManHash, where, "the file does not end in its hash", "it was cut short or edited by hand",
-                        "Restore it, or rebuild the database");
+    return invalidError(IssueCode::kManHash, where, "the file does not end in its hash",
+                        "it was cut short or edited by hand", "Restore it, or rebuild the database");
   }
   const std::string_view body = text.substr(0, text.size() - tail);
   if (toHex(hash128(asBytes(body))) != text.substr(body.size() + kHashLead.size(), kHashDigits)) {
@@ -343,16 +355,19 @@ Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
                         "the file was damaged or edited by hand", "Restore it, or rebuild the database");
   }
   const Json json = Json::parse(std::string(body) + "\n}", nullptr, false);
-  if (json.is_discarded() || !json.is_object()) return invalidError(IssueCode::kManSyntax, where, "this is not JSON");
+  if (json.is_discarded() || !json.is_object())
+    return invalidError(IssueCode::kManSyntax, where, "this is not JSON");
 
   std::string fault;
   Members members(json, "", fault);
-  if (members.text("format") != kFormatName) return invalidError(IssueCode::kManSyntax, where, "this is not the header of a deltaz database");
+  if (members.text("format") != kFormatName)
+    return invalidError(IssueCode::kManSyntax, where, "this is not the header of a deltaz database");
   const std::int64_t version = members.integer("version", 1, INT64_MAX);
   if (version > kAreaVersion) {
-    return newerFormatError(IssueCode::kHdrVersionNewer, where,
-                            fmt::format("the database has version {}, newer than this program knows ({})", version, kAreaVersion),
-                            "Use a newer deltaz");
+    return newerFormatError(
+        IssueCode::kHdrVersionNewer, where,
+        fmt::format("the database has version {}, newer than this program knows ({})", version, kAreaVersion),
+        "Use a newer deltaz");
   }
   if (const Json& required = members.array("required_features", 0, 1000); !required.empty()) {
     return newerFormatError(IssueCode::kHdrFeatureUnknown, where,
@@ -364,7 +379,8 @@ Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
   AreaHeader area = readArea(json, fault);
   if (!fault.empty()) return invalidError(IssueCode::kManField, where, fault);
   if (!may_hold_more && serializeArea(area) != text) {
-    return invalidError(IssueCode::kManField, where, "the file is not in canonical form", "it has members this version does not know, or in another order");
+    return invalidError(IssueCode::kManField, where, "the file is not in canonical form",
+                        "it has members this version does not know, or in another order");
   }
   return area;
 }

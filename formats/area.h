@@ -34,7 +34,7 @@ struct Rational {
 };
 
 struct EllipsoidShape {
-  double semi_major_axis = 6378137.0;        // metres
+  double semi_major_axis = 6378137.0;         // metres
   double inverse_flattening = 298.257223563;  // 0 means a sphere
   bool operator==(const EllipsoidShape&) const = default;
 };
@@ -43,40 +43,40 @@ struct EllipsoidShape {
 //   origin + (g + phase) * spacing degrees,  origin = -180 (longitude) or -90 (latitude).
 // Where `exact_spacing` is given it is the spacing in arc-seconds and the sum is evaluated exactly.
 struct GridAxis {
-  double spacing_degrees = 0;                  // > 0
-  std::optional<Rational> exact_spacing;       // arc-seconds
-  double phase = 0;                            // posts, 0 <= phase < 1
-  std::int64_t first = 0;                      // global index of the area's first post (west or south)
-  std::int64_t count = 0;                      // posts, >= 2
+  double spacing_degrees = 0;             // > 0
+  std::optional<Rational> exact_spacing;  // arc-seconds
+  double phase = 0;                       // posts, 0 <= phase < 1
+  std::int64_t first = 0;                 // global index of the area's first post (west or south)
+  std::int64_t count = 0;                 // posts, >= 2
   bool operator==(const GridAxis&) const = default;
 };
 
 // What the source said, kept so that export gives it back unchanged.
 struct SourceDescription {
-  std::string name;                            // base name of the file
-  Hash128 content;                             // of the file's bytes
-  std::string driver;                          // GDAL's short name, e.g. "GTiff"
-  std::array<double, 6> geotransform{};        // GDAL convention: corner of the corner pixel, row 0 first
-  bool point_registered = false;               // AREA_OR_POINT=Point
-  std::string data_type;                       // "Int16", ...
-  std::optional<double> nodata;                // declared sentinel
-  std::string unit;                            // unit of the elevations as the source spells it; may be empty
+  std::string name;                      // base name of the file
+  Hash128 content;                       // of the file's bytes
+  std::string driver;                    // GDAL's short name, e.g. "GTiff"
+  std::array<double, 6> geotransform{};  // GDAL convention: corner of the corner pixel, row 0 first
+  bool point_registered = false;         // AREA_OR_POINT=Point
+  std::string data_type;                 // "Int16", ...
+  std::optional<double> nodata;          // declared sentinel
+  std::string unit;                      // unit of the elevations as the source spells it; may be empty
   std::int64_t columns = 0, rows = 0;
   bool operator==(const SourceDescription&) const = default;
 };
 
 struct GridHeader {
   std::string kind = "geodetic";
-  std::string crs_wkt;                         // horizontal CRS as WKT2
-  std::string horizontal_datum;                // "WGS 84"; name only, the ellipsoid below is what counts
-  std::string vertical_datum;                  // name, or "unknown"
+  std::string crs_wkt;           // horizontal CRS as WKT2
+  std::string horizontal_datum;  // "WGS 84"; name only, the ellipsoid below is what counts
+  std::string vertical_datum;    // name, or "unknown"
   EllipsoidShape ellipsoid;
-  std::string unit;                            // of the quantum: "metre"
-  Rational quantum;                            // metres per height step
+  std::string unit;  // of the quantum: "metre"
+  Rational quantum;  // metres per height step
   GridAxis longitude, latitude;
-  int leaf_cells = 64;                         // cells along a leaf's side, a power of two
-  int level_count = 1;                         // levels with terrain: 0 (finest) .. level_count - 1
-  int normal_exponent = 2;                     // p of Table 11
+  int leaf_cells = 64;      // cells along a leaf's side, a power of two
+  int level_count = 1;      // levels with terrain: 0 (finest) .. level_count - 1
+  int normal_exponent = 2;  // p of Table 11
   std::string diagonal = "SW-NE";
   std::vector<SourceDescription> sources;
   bool operator==(const GridHeader&) const = default;
@@ -86,25 +86,27 @@ enum class FileRole : std::uint8_t { kNodes, kTerrain };
 
 struct FileReference {
   FileRole role = FileRole::kNodes;
-  std::uint32_t segment = 0;                   // terrain only: the number node records use
-  std::string name;                            // in the database folder; no slash
-  std::uint64_t length = 0;                    // bytes
+  std::uint32_t segment = 0;  // terrain only: the number node records use
+  std::string name;           // in the database folder; no slash
+  std::uint64_t length = 0;   // bytes
   Hash128 id;
   bool operator==(const FileReference&) const = default;
 };
 
 struct AreaHeader {
-  std::uint64_t generation = 1;                // grows by one with every published edit
-  double west = 0, south = 0, east = 0, north = 0;  // of the outermost posts, degrees; east > west, may exceed 180
-  std::array<std::int64_t, 3> centroid{};      // Earth-centred, units of kCentroidUnit; the area node's centroid
-  double lowest_height = 0, highest_height = 0;     // metres
-  double sea_drop = 0;                         // chord sag of the coarsest cell, metres: the sea lies at lowest - drop
+  std::uint64_t generation = 1;  // grows by one with every published edit
+  double west = 0, south = 0, east = 0,
+         north = 0;                        // of the outermost posts, degrees; east > west, may exceed 180
+  std::array<std::int64_t, 3> centroid{};  // Earth-centred, units of kCentroidUnit; the area node's centroid
+  double lowest_height = 0, highest_height = 0;  // metres
+  double sea_drop = 0;  // chord sag of the coarsest cell, metres: the sea lies at lowest - drop
   std::uint32_t node_count = 0;
   std::uint32_t nodes_per_page = 0;
   std::vector<GridHeader> grids;
   std::vector<FileReference> files;
-  std::string tool_version;                    // provenance
-  std::vector<std::pair<std::string, std::string>> options;  // provenance: semantic options in the order of their names
+  std::string tool_version;  // provenance
+  std::vector<std::pair<std::string, std::string>>
+      options;  // provenance: semantic options in the order of their names
   bool operator==(const AreaHeader&) const = default;
 };
 

@@ -40,7 +40,8 @@ T loadLittleEndian(std::span<const std::byte> bytes, std::size_t offset) {
   assert(offset + sizeof(T) <= bytes.size());
   Unsigned bits = 0;
   for (std::size_t i = 0; i < sizeof(T); ++i) {
-    bits = static_cast<Unsigned>(bits | (static_cast<Unsigned>(std::to_integer<std::uint8_t>(bytes[offset + i])) << (8 * i)));
+    bits = static_cast<Unsigned>(
+        bits | (static_cast<Unsigned>(std::to_integer<std::uint8_t>(bytes[offset + i])) << (8 * i)));
   }
   return std::bit_cast<T>(bits);
 }
@@ -53,7 +54,8 @@ class ByteWriter {
     static_assert(std::is_arithmetic_v<T>);
     using Unsigned = typename bytes_detail::UnsignedOfSize<sizeof(T)>::Type;
     const auto bits = std::bit_cast<Unsigned>(value);
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes_.push_back(static_cast<std::byte>((bits >> (8 * i)) & 0xFF));
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes_.push_back(static_cast<std::byte>((bits >> (8 * i)) & 0xFF));
   }
   void putBytes(std::span<const std::byte> more) { bytes_.insert(bytes_.end(), more.begin(), more.end()); }
   void putZeros(std::size_t count) { bytes_.insert(bytes_.end(), count, std::byte{0}); }

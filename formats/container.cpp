@@ -1,9 +1,8 @@
 #include "formats/container.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "formats/bytes.h"
 
@@ -47,26 +46,32 @@ const char* const kDamaged = "The file is damaged; restore it or rebuild the dat
 Status checkHeader(std::span<const std::byte> header, ContentKind kind, const std::string& path,
                    std::uint32_t& optional_features) {
   if (!hasMagic(header, kContainerMagic)) {
-    return invalidError(IssueCode::kHdrMagic, path, "this is not a deltaz file", "its first bytes are not the magic number");
+    return invalidError(IssueCode::kHdrMagic, path, "this is not a deltaz file",
+                        "its first bytes are not the magic number");
   }
-  if (loadLittleEndian<std::uint64_t>(header, kHeaderChecksumOffset) != hash64(header.first(kHeaderChecksumOffset))) {
-    return invalidError(IssueCode::kHdrChecksum, path, "the header does not match its checksum", {}, kDamaged);
+  if (loadLittleEndian<std::uint64_t>(header, kHeaderChecksumOffset) !=
+      hash64(header.first(kHeaderChecksumOffset))) {
+    return invalidError(IssueCode::kHdrChecksum, path, "the header does not match its checksum", {},
+                        kDamaged);
   }
   const auto version = loadLittleEndian<std::uint16_t>(header, 8);
   if (version > kContainerVersion) {
-    return newerFormatError(IssueCode::kHdrVersionNewer, path,
-                            fmt::format("container version {} is newer than this program knows ({})", version, kContainerVersion),
-                            "Use a newer deltaz");
+    return newerFormatError(
+        IssueCode::kHdrVersionNewer, path,
+        fmt::format("container version {} is newer than this program knows ({})", version, kContainerVersion),
+        "Use a newer deltaz");
   }
   const auto required = loadLittleEndian<std::uint32_t>(header, 12);
   if ((required & ~kKnownRequiredFeatures) != 0) {
-    return newerFormatError(IssueCode::kHdrFeatureUnknown, path,
-                            fmt::format("the file needs features this program does not have (bits {:#x})", required),
-                            "Use a newer deltaz");
+    return newerFormatError(
+        IssueCode::kHdrFeatureUnknown, path,
+        fmt::format("the file needs features this program does not have (bits {:#x})", required),
+        "Use a newer deltaz");
   }
   if (version == 0 || loadLittleEndian<std::uint16_t>(header, 10) != static_cast<std::uint16_t>(kind) ||
       loadLittleEndian<std::uint32_t>(header, 20) != 0) {
-    return invalidError(IssueCode::kHdrField, path, "the header's version, kind or reserved field has a wrong value", {}, kDamaged);
+    return invalidError(IssueCode::kHdrField, path,
+                        "the header's version, kind or reserved field has a wrong value", {}, kDamaged);
   }
   optional_features = loadLittleEndian<std::uint32_t>(header, 16);
   return Success{};
@@ -87,9 +92,11 @@ std::uint64_t blockChecksum(std::uint64_t payload_hash, const Hash128& file_id, 
 
 // ---- writing
 
-ContainerWriter::ContainerWriter(std::unique_ptr<WritableFile> file, ContentKind kind) : file_(std::move(file)), kind_(kind) {}
+ContainerWriter::ContainerWriter(std::unique_ptr<WritableFile> file, ContentKind kind)
+    : file_(std::move(file)), kind_(kind) {}
 
-Result<ContainerWriter> ContainerWriter::create(const FileSystem& files, const std::string& path, ContentKind kind) {
+Result<ContainerWriter> ContainerWriter::create(const FileSystem& files, const std::string& path,
+                                                ContentKind kind) {
   DELTAZ_TRY_ASSIGN(std::unique_ptr<WritableFile> file, files.create(path));
   ContainerWriter writer(std::move(file), kind);
   ByteWriter header;
@@ -167,22 +174,24 @@ Result<std::vector<std::byte>> ContainerReader::readBytes(std::uint64_t offset, 
   return bytes;
 }
 
-Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std::string& path, ContentKind kind) {
+Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std::string& path,
+                                              ContentKind kind) {
   ContainerReader reader;
   reader.path_ = path;
   reader.cache_ = std::make_unique<Cache>();
   DELTAZ_TRY_ASSIGN(reader.file_, files.open(path));
   const std::uint64_t length = reader.file_->size();
   if (length < kContainerHeaderBytes + kContainerFooterBytes) {
-    return invalidError(IssueCode::kHdrLength, path, fmt::format("the file is too short ({} bytes)", length), {}, kDamaged);
+    return invalidError(IssueCode::kHdrLength, path, fmt::format("the file is too short ({} bytes)", length),
+                        {}, kDamaged);
   }
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> header, reader.readBytes(0, kContainerHeaderBytes));
   DELTAZ_TRY(checkHeader(header, kind, path, reader.optional_features_));
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> footer,
                     reader.readBytes(length - kContainerFooterBytes, kContainerFooterBytes));
   const std::span<const std::byte> bytes(footer);
-  if (!hasMagic(bytes, kFooterMagic) ||
-      loadLittleEndian<std::uint64_t>(bytes, kFooterChecksumOffset) != hash64(bytes.first(kFooterChecksumOffset))) {
+  if (!hasMagic(bytes, kFooterMagic) || loadLittleEndian<std::uint64_t>(bytes, kFooterChecksumOffset) !=
+                                            hash64(bytes.first(kFooterChecksumOffset))) {
     return invalidError(IssueCode::kHdrFooter, path, "the file does not end in a valid footer",
                         "it was cut short, added to, or never finished", kDamaged);
   }
@@ -196,16 +205,19 @@ Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std
   std::copy_n(bytes.begin() + 32, reader.identity_.id.bytes.size(), reader.identity_.id.bytes.begin());
   if (stated_length != length) {
     return invalidError(IssueCode::kHdrLength, path,
-                        fmt::format("the file has {} bytes, its footer says {}", length, stated_length), {}, kDamaged);
+                        fmt::format("the file has {} bytes, its footer says {}", length, stated_length), {},
+                        kDamaged);
   }
   // Counts are compared with what the file can hold before they size anything.
-  const std::uint64_t pages = (static_cast<std::uint64_t>(reader.block_count_) + kIndexEntriesPerPage - 1) / kIndexEntriesPerPage;
-  const std::uint64_t index_bytes = static_cast<std::uint64_t>(reader.block_count_) * kIndexEntryBytes + pages * 8;
+  const std::uint64_t pages =
+      (static_cast<std::uint64_t>(reader.block_count_) + kIndexEntriesPerPage - 1) / kIndexEntriesPerPage;
+  const std::uint64_t index_bytes =
+      static_cast<std::uint64_t>(reader.block_count_) * kIndexEntryBytes + pages * 8;
   const std::uint64_t index_end = length - kContainerFooterBytes;
-  if (stated_kind != static_cast<std::uint16_t>(kind) || stated_version == 0 || stated_version > kContainerVersion ||
-      !allZero(bytes.subspan(48, kFooterChecksumOffset - 48)) || reader.index_offset_ < kContainerHeaderBytes ||
-      reader.index_offset_ % kBlockAlignment != 0 || index_bytes > index_end ||
-      reader.index_offset_ != index_end - index_bytes) {
+  if (stated_kind != static_cast<std::uint16_t>(kind) || stated_version == 0 ||
+      stated_version > kContainerVersion || !allZero(bytes.subspan(48, kFooterChecksumOffset - 48)) ||
+      reader.index_offset_ < kContainerHeaderBytes || reader.index_offset_ % kBlockAlignment != 0 ||
+      index_bytes > index_end || reader.index_offset_ != index_end - index_bytes) {
     return invalidError(IssueCode::kHdrField, path, "the footer's fields do not fit the file", {}, kDamaged);
   }
   reader.cache_->pages.resize(pages);
@@ -214,7 +226,8 @@ Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std
 
 Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
   if (number >= block_count_) {
-    return invalidError(IssueCode::kRefData, path_, fmt::format("there is no block {}; the file has {}", number, block_count_));
+    return invalidError(IssueCode::kRefData, path_,
+                        fmt::format("there is no block {}; the file has {}", number, block_count_));
   }
   const std::size_t page_number = number / kIndexEntriesPerPage;
   {
@@ -223,13 +236,14 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
     if (!page.empty()) return page[number % kIndexEntriesPerPage];
   }
   const std::uint64_t offset = index_offset_ + page_number * kIndexPageBytes;
-  const std::size_t entries = std::min<std::size_t>(kIndexEntriesPerPage, block_count_ - page_number * kIndexEntriesPerPage);
+  const std::size_t entries =
+      std::min<std::size_t>(kIndexEntriesPerPage, block_count_ - page_number * kIndexEntriesPerPage);
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, readBytes(offset, entries * kIndexEntryBytes + 8));
   const std::span<const std::byte> view(bytes);
   const std::span<const std::byte> body = view.first(entries * kIndexEntryBytes);
   if (loadLittleEndian<std::uint64_t>(view, body.size()) != pageChecksum(body, identity_.id, offset)) {
-    return invalidError(IssueCode::kIdxChecksum, path_, fmt::format("index page {} does not match its checksum", page_number),
-                        {}, kDamaged);
+    return invalidError(IssueCode::kIdxChecksum, path_,
+                        fmt::format("index page {} does not match its checksum", page_number), {}, kDamaged);
   }
   std::vector<BlockLocation> page;
   ByteReader fields(body);
@@ -242,9 +256,10 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
     if (block.offset < kContainerHeaderBytes || block.offset > index_offset_ || block.length == 0 ||
         block.length > kMaximumBlockBytes || block.length > index_offset_ - block.offset ||
         block.offset % kBlockAlignment != 0) {
-      return invalidError(IssueCode::kIdxOrder, path_,
-                          fmt::format("block {} lies outside the file's blocks", page_number * kIndexEntriesPerPage + i), {},
-                          kDamaged);
+      return invalidError(
+          IssueCode::kIdxOrder, path_,
+          fmt::format("block {} lies outside the file's blocks", page_number * kIndexEntriesPerPage + i), {},
+          kDamaged);
     }
     page.push_back(block);
   }
@@ -256,15 +271,17 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
 Result<std::vector<std::byte>> ContainerReader::read(std::uint32_t number, BlockType type) const {
   DELTAZ_TRY_ASSIGN(const BlockLocation block, locate(number));
   if (block.type != type) {
-    return invalidError(IssueCode::kRefData, path_,
-                        fmt::format("block {} is of type {}, not {}", number, static_cast<std::uint32_t>(block.type),
-                                    static_cast<std::uint32_t>(type)));
+    return invalidError(
+        IssueCode::kRefData, path_,
+        fmt::format("block {} is of type {}, not {}", number, static_cast<std::uint32_t>(block.type),
+                    static_cast<std::uint32_t>(type)));
   }
   DELTAZ_TRY_ASSIGN(std::vector<std::byte> payload, readBytes(block.offset, block.length));
-  if (blockChecksum(hash64(payload), identity_.id, block.offset, block.length, block.type) != block.checksum) {
+  if (blockChecksum(hash64(payload), identity_.id, block.offset, block.length, block.type) !=
+      block.checksum) {
     return invalidError(IssueCode::kSumBlock, path_,
-                        fmt::format("block {} (bytes {} to {}) does not match its checksum", number, block.offset,
-                                    block.offset + block.length - 1),
+                        fmt::format("block {} (bytes {} to {}) does not match its checksum", number,
+                                    block.offset, block.offset + block.length - 1),
                         {}, kDamaged);
   }
   return payload;
@@ -281,15 +298,17 @@ Status ContainerReader::checkIndex() const {
     DELTAZ_TRY_ASSIGN(const BlockLocation block, locate(number));
     if (block.offset != expected) {
       return invalidError(IssueCode::kIdxOrder, path_,
-                          fmt::format("block {} begins at byte {}, not where the one before it ends ({})", number, block.offset,
-                                      expected),
+                          fmt::format("block {} begins at byte {}, not where the one before it ends ({})",
+                                      number, block.offset, expected),
                           {}, kDamaged);
     }
     expected = roundUpToAlignment(block.offset + block.length);
   }
   if (expected != index_offset_) {
-    return invalidError(IssueCode::kIdxOrder, path_, fmt::format("the blocks end at byte {}, the index begins at {}", expected, index_offset_),
-                        {}, kDamaged);
+    return invalidError(
+        IssueCode::kIdxOrder, path_,
+        fmt::format("the blocks end at byte {}, the index begins at {}", expected, index_offset_), {},
+        kDamaged);
   }
   return Success{};
 }
@@ -302,8 +321,9 @@ Status ContainerReader::checkPadding() const {
     if (padding == 0 || end + padding > index_offset_) continue;
     DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, readBytes(end, padding));
     if (!allZero(bytes)) {
-      return invalidError(IssueCode::kSumPadding, path_, fmt::format("the padding after block {} (byte {}) is not zero", number, end),
-                          {}, kDamaged);
+      return invalidError(IssueCode::kSumPadding, path_,
+                          fmt::format("the padding after block {} (byte {}) is not zero", number, end), {},
+                          kDamaged);
     }
   }
   return Success{};
@@ -317,7 +337,8 @@ Status ContainerReader::checkFileId() const {
     payload_hashes.put(hash64(payload));
   }
   if (hash128(payload_hashes.view()) != identity_.id) {
-    return invalidError(IssueCode::kSumFileId, path_, "the file's identity does not follow from its contents", {}, kDamaged);
+    return invalidError(IssueCode::kSumFileId, path_, "the file's identity does not follow from its contents",
+                        {}, kDamaged);
   }
   return Success{};
 }

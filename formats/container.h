@@ -1,9 +1,11 @@
-// The container every binary file of a database is: a header, blocks, an index of the blocks in pages, a footer.
-// The bytes are specified in container.md. Every byte of the file is under a checksum or must be zero.
+// The container every binary file of a database is: a header, blocks, an index of the blocks in pages, a
+// footer. The bytes are specified in container.md. Every byte of the file is under a checksum or must be
+// zero.
 //
-// Guarantees of the reader: a block is handed out only if its checksum, which covers its payload, the file's identity
-// and the block's own offset, holds; counts are checked against the file's length before anything is allocated.
-// Errors: kInvalid with a HDR_, IDX_ or SUM_ code; kNewerFormat for an unknown version or required feature.
+// Guarantees of the reader: a block is handed out only if its checksum, which covers its payload, the file's
+// identity and the block's own offset, holds; counts are checked against the file's length before anything is
+// allocated. Errors: kInvalid with a HDR_, IDX_ or SUM_ code; kNewerFormat for an unknown version or required
+// feature.
 #pragma once
 
 #include <array>
@@ -39,13 +41,14 @@ enum class ContentKind : std::uint16_t { kNodes = 1, kTerrain = 2 };
 enum class BlockType : std::uint32_t { kNodePage = 1, kTerrainNode = 2 };
 
 struct BlockLocation {
-  std::uint64_t offset = 0;    // of the payload from the start of the file, bytes
-  std::uint32_t length = 0;    // of the payload, bytes
+  std::uint64_t offset = 0;  // of the payload from the start of the file, bytes
+  std::uint32_t length = 0;  // of the payload, bytes
   BlockType type = BlockType::kNodePage;
   std::uint64_t checksum = 0;  // blockChecksum of what follows
 };
 
-// The checksum stored for a block: XXH3-64 over the hash of its payload, the file id, and where and what it is.
+// The checksum stored for a block: XXH3-64 over the hash of its payload, the file id, and where and what it
+// is.
 std::uint64_t blockChecksum(std::uint64_t payload_hash, const Hash128& file_id, std::uint64_t offset,
                             std::uint32_t length, BlockType type);
 
@@ -77,7 +80,8 @@ class ContainerWriter {
   std::vector<BlockLocation> blocks_;  // checksum holds the payload's hash until finish()
 };
 
-// Opens a container, and reads and verifies its blocks on demand. Thread-safety: all const members from any thread.
+// Opens a container, and reads and verifies its blocks on demand. Thread-safety: all const members from any
+// thread.
 class ContainerReader {
  public:
   // Reads header and footer only. `path` is used in messages.
@@ -88,7 +92,8 @@ class ContainerReader {
   const std::string& path() const { return path_; }
   std::uint32_t optionalFeatures() const { return optional_features_; }
 
-  // Where block `number` lies (reads its index page once). kIdxOrder if it lies outside the file's block region.
+  // Where block `number` lies (reads its index page once). kIdxOrder if it lies outside the file's block
+  // region.
   Result<BlockLocation> locate(std::uint32_t number) const;
   // The verified payload of block `number`, which must be of type `type`.
   Result<std::vector<std::byte>> read(std::uint32_t number, BlockType type) const;

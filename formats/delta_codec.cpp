@@ -1,10 +1,9 @@
 #include "formats/delta_codec.h"
 
-#include <zstd.h>
-
 #include <algorithm>
 #include <cassert>
 #include <memory>
+#include <zstd.h>
 
 #include "formats/bytes.h"
 
@@ -38,7 +37,9 @@ unsigned planesFor(std::uint32_t largest) {
   return planes;
 }
 
-std::size_t maskBytes(std::size_t posts) { return (posts + 7) / 8; }
+std::size_t maskBytes(std::size_t posts) {
+  return (posts + 7) / 8;
+}
 
 struct ZstdCompressor {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
@@ -46,32 +47,37 @@ struct ZstdCompressor {
 
 }  // namespace
 
-std::vector<std::int32_t> differencesOf(std::span<const std::int32_t> heights, std::uint32_t columns, std::uint32_t rows) {
+std::vector<std::int32_t> differencesOf(std::span<const std::int32_t> heights, std::uint32_t columns,
+                                        std::uint32_t rows) {
   assert(columns >= 1 && rows >= 1 && heights.size() == static_cast<std::size_t>(columns) * rows);
   std::vector<std::int32_t> differences(heights.size());
   for (std::size_t j = 0; j < rows; ++j) {
     const std::size_t row = j * columns;
     differences[row] = j == 0 ? heights[0] : wrappingSubtract(heights[row], heights[row - columns]);
-    for (std::size_t i = 1; i < columns; ++i) differences[row + i] = wrappingSubtract(heights[row + i], heights[row + i - 1]);
+    for (std::size_t i = 1; i < columns; ++i)
+      differences[row + i] = wrappingSubtract(heights[row + i], heights[row + i - 1]);
   }
   return differences;
 }
 
-std::vector<std::int32_t> sumsOf(std::span<const std::int32_t> differences, std::uint32_t columns, std::uint32_t rows) {
+std::vector<std::int32_t> sumsOf(std::span<const std::int32_t> differences, std::uint32_t columns,
+                                 std::uint32_t rows) {
   assert(columns >= 1 && rows >= 1 && differences.size() == static_cast<std::size_t>(columns) * rows);
   std::vector<std::int32_t> heights(differences.size());
   for (std::size_t j = 0; j < rows; ++j) {
     const std::size_t row = j * columns;
     heights[row] = j == 0 ? differences[0] : wrappingAdd(heights[row - columns], differences[row]);
-    for (std::size_t i = 1; i < columns; ++i) heights[row + i] = wrappingAdd(heights[row + i - 1], differences[row + i]);
+    for (std::size_t i = 1; i < columns; ++i)
+      heights[row + i] = wrappingAdd(heights[row + i - 1], differences[row + i]);
   }
   return heights;
 }
 
 void fillVoids(HeightArray& array) {
   const auto first_valid = std::find(array.valid.begin(), array.valid.end(), std::uint8_t{1});
-  const std::int32_t start =
-      first_valid == array.valid.end() ? 0 : array.heights[static_cast<std::size_t>(first_valid - array.valid.begin())];
+  const std::int32_t start = first_valid == array.valid.end()
+                                 ? 0
+                                 : array.heights[static_cast<std::size_t>(first_valid - array.valid.begin())];
   for (std::size_t k = 0; k < array.heights.size(); ++k) {
     if (array.valid[k] != 0) continue;
     if (k == 0) {
@@ -90,7 +96,8 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
   std::uint32_t largest = 0;
   for (std::size_t k = 1; k < posts; ++k) largest = std::max(largest, zigzag(differences[k]));
   const unsigned planes = planesFor(largest);
-  const bool has_voids = std::find(array.valid.begin(), array.valid.end(), std::uint8_t{0}) != array.valid.end();
+  const bool has_voids =
+      std::find(array.valid.begin(), array.valid.end(), std::uint8_t{0}) != array.valid.end();
 
   std::vector<std::byte> raw((posts - 1) * planes + (has_voids ? maskBytes(posts) : 0));
   for (std::size_t k = 1; k < posts; ++k) {
@@ -109,7 +116,8 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 1);
   std::vector<std::byte> packed(ZSTD_compressBound(raw.size()));
-  const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
+  const std::size_t size =
+      ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
   assert(!ZSTD_isError(size));
 
   ByteWriter writer;
@@ -121,13 +129,14 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
   return writer.take();
 }
 
-Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking packing, std::uint32_t columns,
-                                  std::uint32_t rows, const std::string& where) {
+Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking packing,
+                                  std::uint32_t columns, std::uint32_t rows, const std::string& where) {
   const auto damaged = [&](const char* why) {
     return invalidError(IssueCode::kHgtDecode, where, "the delta-z array cannot be unpacked", why);
   };
   if (packing != DeltaPacking::kPlanes) {
-    return newerFormatError(IssueCode::kHdrFeatureUnknown, where, "the delta-z array is packed in a way this program does not know",
+    return newerFormatError(IssueCode::kHdrFeatureUnknown, where,
+                            "the delta-z array is packed in a way this program does not know",
                             "Use a newer deltaz");
   }
   if (bytes.size() < 8) return damaged("it is too short");
@@ -141,7 +150,8 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
   const std::size_t posts = static_cast<std::size_t>(columns) * rows;
   const std::size_t raw_size = (posts - 1) * planes + (flags == 1 ? maskBytes(posts) : 0);
   std::vector<std::byte> raw(raw_size);
-  const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), reader.rest().data(), reader.rest().size());
+  const std::size_t size =
+      ZSTD_decompress(raw.data(), raw.size(), reader.rest().data(), reader.rest().size());
   if (ZSTD_isError(size) || size != raw_size) return damaged("its compressed bytes are not what zstd wrote");
 
   std::vector<std::int32_t> differences(posts);
@@ -165,7 +175,8 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
     }
     // The bits after the last post are zero: nothing in a file is without meaning.
     for (std::size_t k = posts; k < mask.size() * 8; ++k) {
-      if (((std::to_integer<unsigned>(mask[k / 8]) >> (k % 8)) & 1u) != 0) return damaged("its void mask is too long");
+      if (((std::to_integer<unsigned>(mask[k / 8]) >> (k % 8)) & 1u) != 0)
+        return damaged("its void mask is too long");
     }
   }
   return array;

@@ -1,8 +1,8 @@
-// How a delta-z array is packed into bytes. What the array means is fixed (terrain_segment.md); this is only the
-// packing, and the place where a better one will be added under a new number.
+// How a delta-z array is packed into bytes. What the array means is fixed (terrain_segment.md); this is only
+// the packing, and the place where a better one will be added under a new number.
 //
-// Packing 1, "planes": differences are zigzag coded, split into byte planes, followed by the void mask as bits, and
-// compressed with zstd. Errors: kInvalid with kHgtDecode. Thread-safety: pure functions.
+// Packing 1, "planes": differences are zigzag coded, split into byte planes, followed by the void mask as
+// bits, and compressed with zstd. Errors: kInvalid with kHgtDecode. Thread-safety: pure functions.
 #pragma once
 
 #include <cstddef>
@@ -28,13 +28,15 @@ struct HeightArray {
 std::vector<std::int32_t> differencesOf(std::span<const std::int32_t> heights, std::uint32_t columns,
                                         std::uint32_t rows);
 // Its inverse. Sums wrap modulo 2^32, so any input is defined.
-std::vector<std::int32_t> sumsOf(std::span<const std::int32_t> differences, std::uint32_t columns, std::uint32_t rows);
+std::vector<std::int32_t> sumsOf(std::span<const std::int32_t> differences, std::uint32_t columns,
+                                 std::uint32_t rows);
 
-// Gives every void post the height its difference becomes zero with; a leading run takes the first valid height.
+// Gives every void post the height its difference becomes zero with; a leading run takes the first valid
+// height.
 void fillVoids(HeightArray& array);
 
 std::vector<std::byte> packHeights(const HeightArray& array, DeltaPacking packing);
-Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking packing, std::uint32_t columns,
-                                  std::uint32_t rows, const std::string& where);
+Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking packing,
+                                  std::uint32_t columns, std::uint32_t rows, const std::string& where);
 
 }  // namespace deltaz

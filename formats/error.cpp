@@ -17,7 +17,8 @@ constexpr std::array kCodeNames = {
 #undef DELTAZ_NAME
 };
 
-Error makeError(ErrorKind kind, IssueCode code, std::string where, std::string what, std::string why, std::string remedy) {
+Error makeError(ErrorKind kind, IssueCode code, std::string where, std::string what, std::string why,
+                std::string remedy) {
   return Error{kind, code, std::move(what), std::move(where), std::move(why), std::move(remedy)};
 }
 
@@ -39,11 +40,16 @@ std::optional<IssueCode> issueCodeFromName(std::string_view name) {
 
 int exitCode(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::kInvalid: return 1;
-    case ErrorKind::kUsage: return 2;
-    case ErrorKind::kCannotAccess: return 3;
-    case ErrorKind::kNewerFormat: return 4;
-    case ErrorKind::kInternal: return 70;
+    case ErrorKind::kInvalid:
+      return 1;
+    case ErrorKind::kUsage:
+      return 2;
+    case ErrorKind::kCannotAccess:
+      return 3;
+    case ErrorKind::kNewerFormat:
+      return 4;
+    case ErrorKind::kInternal:
+      return 70;
   }
   return 70;
 }
@@ -58,16 +64,18 @@ std::string Error::message() const {
 }
 
 Error invalidError(IssueCode code, std::string where, std::string what, std::string why, std::string remedy) {
-  return makeError(ErrorKind::kInvalid, code, std::move(where), std::move(what), std::move(why), std::move(remedy));
+  return makeError(ErrorKind::kInvalid, code, std::move(where), std::move(what), std::move(why),
+                   std::move(remedy));
 }
 
 Error usageError(std::string where, std::string what, std::string why, std::string remedy) {
-  return makeError(ErrorKind::kUsage, IssueCode::kNone, std::move(where), std::move(what), std::move(why), std::move(remedy));
+  return makeError(ErrorKind::kUsage, IssueCode::kNone, std::move(where), std::move(what), std::move(why),
+                   std::move(remedy));
 }
 
 Error accessError(std::string where, std::string what, std::string why, std::string remedy) {
-  return makeError(ErrorKind::kCannotAccess, IssueCode::kIoCannotRead, std::move(where), std::move(what), std::move(why),
-                   std::move(remedy));
+  return makeError(ErrorKind::kCannotAccess, IssueCode::kIoCannotRead, std::move(where), std::move(what),
+                   std::move(why), std::move(remedy));
 }
 
 Error newerFormatError(IssueCode code, std::string where, std::string what, std::string remedy) {

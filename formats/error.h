@@ -1,7 +1,7 @@
 // Errors are values: what went wrong, where, why, and what to do about it.
 //
-// Every fallible function of deltaz returns Result<T>. No exception leaves a deltaz library: those of GDAL, of the
-// JSON parser and of the allocator are caught at the edge where the foreign code is called.
+// Every fallible function of deltaz returns Result<T>. No exception leaves a deltaz library: those of GDAL,
+// of the JSON parser and of the allocator are caught at the edge where the foreign code is called.
 // Thread-safety: plain values.
 #pragma once
 
@@ -29,11 +29,12 @@ int exitCode(ErrorKind kind);
 
 struct Error {
   ErrorKind kind = ErrorKind::kInternal;
-  IssueCode code = IssueCode::kNone;  // the code dbcheck reports this failure under; kNone outside database content
-  std::string what;                   // "block 7 does not match its checksum"
-  std::string where;                  // "area.dz/terrain-000001.dzt, byte 4096"
-  std::string why;                    // "the bytes were changed after they were written"; may be empty
-  std::string remedy;                 // "restore the file or rebuild the database"; may be empty
+  IssueCode code =
+      IssueCode::kNone;  // the code dbcheck reports this failure under; kNone outside database content
+  std::string what;      // "block 7 does not match its checksum"
+  std::string where;     // "area.dz/terrain-000001.dzt, byte 4096"
+  std::string why;       // "the bytes were changed after they were written"; may be empty
+  std::string remedy;    // "restore the file or rebuild the database"; may be empty
 
   // "where: what: why. remedy", one line.
   std::string message() const;
@@ -81,18 +82,20 @@ struct Success {};
 using Status = Result<Success>;
 
 // Returns the error of `expression` from the calling function if it failed.
-#define DELTAZ_TRY(expression)                                            \
-  do {                                                                    \
+#define DELTAZ_TRY(expression)                                                       \
+  do {                                                                               \
     if (auto try_status = (expression); !try_status.ok()) return try_status.error(); \
   } while (false)
 
 #define DELTAZ_CONCATENATE_INNER(a, b) a##b
 #define DELTAZ_CONCATENATE(a, b) DELTAZ_CONCATENATE_INNER(a, b)
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses.
 // Declares `declaration` with the value of `expression`, or returns its error from the calling function.
-#define DELTAZ_TRY_ASSIGN(declaration, expression)                                      \
-  auto DELTAZ_CONCATENATE(try_result_, __LINE__) = (expression);                        \
-  if (!DELTAZ_CONCATENATE(try_result_, __LINE__).ok())                                  \
-    return DELTAZ_CONCATENATE(try_result_, __LINE__).error();                           \
+#define DELTAZ_TRY_ASSIGN(declaration, expression)               \
+  auto DELTAZ_CONCATENATE(try_result_, __LINE__) = (expression); \
+  if (!DELTAZ_CONCATENATE(try_result_, __LINE__).ok())           \
+    return DELTAZ_CONCATENATE(try_result_, __LINE__).error();    \
   declaration = std::move(DELTAZ_CONCATENATE(try_result_, __LINE__)).value()
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace deltaz

@@ -1,15 +1,14 @@
 #include "formats/file_system.h"
 
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 
 namespace deltaz {
 
@@ -49,13 +48,14 @@ class LocalReadableFile final : public ReadableFile {
   Status readAt(std::uint64_t offset, std::span<std::byte> out) const override {
     std::size_t done = 0;
     while (done < out.size()) {
-      const ssize_t count = ::pread(descriptor_.get(), out.data() + done, out.size() - done,
-                                    static_cast<off_t>(offset + done));
+      const ssize_t count =
+          ::pread(descriptor_.get(), out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
       if (count < 0) {
         if (errno == EINTR) continue;
         return systemError(path_, "cannot read", errno);
       }
-      if (count == 0) return accessError(path_, "cannot read", "the file ends early", "It may have been cut while open");
+      if (count == 0)
+        return accessError(path_, "cannot read", "the file ends early", "It may have been cut while open");
       done += static_cast<std::size_t>(count);
     }
     return Success{};
@@ -197,7 +197,8 @@ class LocalFileSystem final : public FileSystem {
     if (descriptor.get() < 0) return systemError(path, "cannot lock", errno);
     if (::flock(descriptor.get(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) {
-        return accessError(path, "cannot lock", "another process is writing", "Wait for it to end and run again");
+        return accessError(path, "cannot lock", "another process is writing",
+                           "Wait for it to end and run again");
       }
       return systemError(path, "cannot lock", errno);
     }
@@ -239,7 +240,8 @@ std::string parentPath(const std::string& path) {
   return slash == 0 ? "/" : withoutTrailingSlashes(trimmed.substr(0, slash));
 }
 
-Result<std::vector<std::byte>> readWholeFile(const FileSystem& files, const std::string& path, std::uint64_t limit) {
+Result<std::vector<std::byte>> readWholeFile(const FileSystem& files, const std::string& path,
+                                             std::uint64_t limit) {
   DELTAZ_TRY_ASSIGN(const std::unique_ptr<ReadableFile> file, files.open(path));
   if (file->size() > limit) {
     return invalidError(IssueCode::kHdrLength, path, "the file is too long to be what its name says");

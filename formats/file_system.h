@@ -1,8 +1,9 @@
-// The one door to the disk. Everything deltaz reads or writes of a database goes through a FileSystem, so that tests
-// can put one in memory, make it fail, or stop it half way. (Sources are read by GDAL through its own layer.)
+// The one door to the disk. Everything deltaz reads or writes of a database goes through a FileSystem, so
+// that tests can put one in memory, make it fail, or stop it half way. (Sources are read by GDAL through its
+// own layer.)
 //
-// Errors: kCannotAccess with the system's own words; kUsage where a target exists. Thread-safety: a FileSystem and a
-// ReadableFile may be used from several threads at once; a WritableFile from one.
+// Errors: kCannotAccess with the system's own words; kUsage where a target exists. Thread-safety: a
+// FileSystem and a ReadableFile may be used from several threads at once; a WritableFile from one.
 #pragma once
 
 #include <cstddef>
@@ -62,7 +63,8 @@ class FileSystem {
   virtual Status removeDirectory(const std::string& path) const = 0;
   // Makes the names in a folder durable.
   virtual Status syncDirectory(const std::string& path) const = 0;
-  // Takes the writers' lock on `path`, creating the file; fails at once with kCannotAccess if another process has it.
+  // Takes the writers' lock on `path`, creating the file; fails at once with kCannotAccess if another process
+  // has it.
   virtual Result<std::unique_ptr<FileLock>> lock(const std::string& path) const = 0;
 };
 
@@ -77,6 +79,7 @@ std::string baseName(const std::string& path);
 std::string parentPath(const std::string& path);
 
 // Reads a whole file of at most `limit` bytes.
-Result<std::vector<std::byte>> readWholeFile(const FileSystem& files, const std::string& path, std::uint64_t limit);
+Result<std::vector<std::byte>> readWholeFile(const FileSystem& files, const std::string& path,
+                                             std::uint64_t limit);
 
 }  // namespace deltaz

@@ -1,8 +1,7 @@
 #include "formats/hash.h"
 
-#include <xxhash.h>
-
 #include <cstring>
+#include <xxhash.h>
 
 namespace deltaz {
 
@@ -24,9 +23,13 @@ int hexDigit(char c) {
 
 }  // namespace
 
-std::uint64_t hash64(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t hash64(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
 
-Hash128 hash128(std::span<const std::byte> bytes) { return fromNative(XXH3_128bits(bytes.data(), bytes.size())); }
+Hash128 hash128(std::span<const std::byte> bytes) {
+  return fromNative(XXH3_128bits(bytes.data(), bytes.size()));
+}
 
 std::string toHex(const Hash128& hash) {
   static constexpr std::string_view kDigits = "0123456789abcdef";
@@ -67,6 +70,8 @@ void StreamingHash::update(std::span<const std::byte> bytes) {
   XXH3_128bits_update(state_->native, bytes.data(), bytes.size());
 }
 
-Hash128 StreamingHash::digest() const { return fromNative(XXH3_128bits_digest(state_->native)); }
+Hash128 StreamingHash::digest() const {
+  return fromNative(XXH3_128bits_digest(state_->native));
+}
 
 }  // namespace deltaz

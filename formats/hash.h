@@ -13,7 +13,8 @@
 
 namespace deltaz {
 
-// 128 bits in the canonical (big-endian) byte order of XXH3, so that the hexadecimal form reads the same everywhere.
+// 128 bits in the canonical (big-endian) byte order of XXH3, so that the hexadecimal form reads the same
+// everywhere.
 struct Hash128 {
   std::array<std::byte, 16> bytes{};
   bool operator==(const Hash128&) const = default;

@@ -1,5 +1,5 @@
-// The codes under which damage and disagreement in a database are reported. A code is never reused and never renamed;
-// a retired one stays listed. The long explanations are in libdb/check/code_registry.h.
+// The codes under which damage and disagreement in a database are reported. A code is never reused and never
+// renamed; a retired one stays listed. The long explanations are in libdb/check/code_registry.h.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace deltaz {
 
-// Families: IO files, HDR headers and footers, IDX block index, SUM checksums, MAN area.json, REF node references,
-// TILE node record against its terrain, HGT heights, SRC database against source.
+// Families: IO files, HDR headers and footers, IDX block index, SUM checksums, MAN area.json, REF node
+// references, TILE node record against its terrain, HGT heights, SRC database against source.
 #define DELTAZ_ISSUE_CODES(X)                    \
   X(kIoCannotRead, "IO_CANNOT_READ")             \
   X(kIoMissingFile, "IO_MISSING_FILE")           \

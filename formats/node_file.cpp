@@ -1,8 +1,7 @@
 #include "formats/node_file.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
+#include <fmt/format.h>
 
 #include "formats/bytes.h"
 
@@ -44,11 +43,13 @@ void encode(ByteWriter& writer, const NodeRecord& record) {
 // What a record can be wrong in by itself; empty if nothing.
 std::string faultOf(const NodeRecord& record, std::uint8_t type, bool reserved_zero) {
   if (!reserved_zero) return "a reserved byte is not zero";
-  if (type > static_cast<std::uint8_t>(NodeType::kTerrain)) return fmt::format("node type {} is unknown", type);
+  if (type > static_cast<std::uint8_t>(NodeType::kTerrain))
+    return fmt::format("node type {} is unknown", type);
   if ((record.flags & ~kKnownFlags) != 0) return fmt::format("flags {:#x} are unknown", record.flags);
   if (record.child_number > 4) return fmt::format("child number {} is not 0 to 4", record.child_number);
   if (record.minimum_height > record.maximum_height) return "its lowest height is above its highest";
-  if (!(record.lod_near >= 0) || !(record.lod_far >= record.lod_near)) return "its LOD ranges are not in order";
+  if (!(record.lod_near >= 0) || !(record.lod_far >= record.lod_near))
+    return "its LOD ranges are not in order";
   if (record.type == NodeType::kTerrain && record.block == kNoBlock) return "a terrain node has no data";
   if (record.type == NodeType::kCluster && record.block != kNoBlock) return "a cluster node has data";
   return {};
@@ -64,8 +65,10 @@ std::vector<std::byte> encodeNodePage(std::span<const NodeRecord> records) {
 }
 
 Result<std::vector<NodeRecord>> decodeNodePage(std::span<const std::byte> bytes, const std::string& where) {
-  if (bytes.empty() || bytes.size() % kNodeRecordBytes != 0 || bytes.size() / kNodeRecordBytes > kNodesPerPage) {
-    return invalidError(IssueCode::kRefRecord, where, fmt::format("a node page of {} bytes is not made of records", bytes.size()));
+  if (bytes.empty() || bytes.size() % kNodeRecordBytes != 0 ||
+      bytes.size() / kNodeRecordBytes > kNodesPerPage) {
+    return invalidError(IssueCode::kRefRecord, where,
+                        fmt::format("a node page of {} bytes is not made of records", bytes.size()));
   }
   std::vector<NodeRecord> records;
   ByteReader reader(bytes);
@@ -98,7 +101,8 @@ Result<std::vector<NodeRecord>> decodeNodePage(std::span<const std::byte> bytes,
     record.valid_posts = reader.get<std::uint32_t>();
     reserved_zero = reader.get<std::uint64_t>() == 0 && reserved_zero;
     if (const std::string fault = faultOf(record, type, reserved_zero); !fault.empty()) {
-      return invalidError(IssueCode::kRefRecord, where, fmt::format("record {} of the page is damaged", records.size()), fault);
+      return invalidError(IssueCode::kRefRecord, where,
+                          fmt::format("record {} of the page is damaged", records.size()), fault);
     }
     records.push_back(record);
   }

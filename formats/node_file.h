@@ -1,5 +1,6 @@
-// The node file: the quadtree as fixed-size records in breadth-first order, several records to a checksummed page, so
-// that the first page is a whole coarse area and a view reads only the pages it needs. Specified in node_file.md.
+// The node file: the quadtree as fixed-size records in breadth-first order, several records to a checksummed
+// page, so that the first page is a whole coarse area and a view reads only the pages it needs. Specified in
+// node_file.md.
 //
 // Source: report 5.1.4.2.2 (node record), 5.1.3.1 (files). Record numbers start at 1; 0 means none.
 // Errors: kInvalid with code kRefRecord. Thread-safety: plain values.
@@ -19,7 +20,7 @@ namespace deltaz {
 inline constexpr std::size_t kNodeRecordBytes = 96;
 inline constexpr std::uint32_t kNodesPerPage = 64;
 inline constexpr std::uint32_t kUnknownError = 0xFFFFFFFF;  // stands for infinity
-inline constexpr std::uint8_t kAreaLevel = 255;  // level of the area's own record
+inline constexpr std::uint8_t kAreaLevel = 255;             // level of the area's own record
 inline constexpr std::uint32_t kNoBlock = 0xFFFFFFFF;
 
 enum class NodeType : std::uint8_t { kCluster = 0, kTerrain = 1, kColor = 2, kModel = 3 };
@@ -29,17 +30,20 @@ inline constexpr std::uint8_t kNodeIsEmpty = 2;   // no valid post below or in t
 
 struct NodeRecord {
   NodeType type = NodeType::kCluster;
-  std::uint8_t level = 0;         // 0 is the finest; a grid's cluster has level_count, the area's 255
-  std::uint8_t child_number = 0;  // 1 SW, 2 SE, 3 NE, 4 NW; 0 for clusters and for the nodes directly under one
+  std::uint8_t level = 0;  // 0 is the finest; a grid's cluster has level_count, the area's 255
+  std::uint8_t child_number =
+      0;  // 1 SW, 2 SE, 3 NE, 4 NW; 0 for clusters and for the nodes directly under one
   std::uint8_t flags = 0;
-  std::uint16_t grid = 0;         // index into area.json's grids
-  std::int32_t x = 0, y = 0;      // node covers posts [x, x+1] * leaf_cells * 2^level (global index) in each axis
+  std::uint16_t grid = 0;     // index into area.json's grids
+  std::int32_t x = 0, y = 0;  // node covers posts [x, x+1] * leaf_cells * 2^level (global index) in each axis
   std::uint32_t first_child = 0;  // record number; 0 for a leaf
   std::uint32_t sibling = 0;      // next child of the same parent; 0 for the last
   std::uint32_t segment = 0;      // terrain segment and block; kNoBlock for nodes without data
   std::uint32_t block = kNoBlock;
-  std::array<std::int32_t, 3> centroid_offset{};  // from the parent's centroid, Earth-centred, units of kCentroidUnit
-  std::uint32_t radius = 0;       // of the sphere around the centroid that holds every post below, kCentroidUnit, rounded up
+  std::array<std::int32_t, 3>
+      centroid_offset{};  // from the parent's centroid, Earth-centred, units of kCentroidUnit
+  std::uint32_t radius =
+      0;  // of the sphere around the centroid that holds every post below, kCentroidUnit, rounded up
   // Of every valid post below: quanta; the area's own record: whole metres, rounded outwards.
   std::int32_t minimum_height = 0, maximum_height = 0;
   std::array<std::int16_t, 3> mean_normal{};  // Earth-centred unit vector times 32767
@@ -47,8 +51,8 @@ struct NodeRecord {
   std::uint32_t geometric_error = kUnknownError;  // kErrorUnit, rounded up
   std::uint32_t coverage_error = kUnknownError;   // kErrorUnit, rounded up
   std::uint32_t rms_error = kUnknownError;        // over posts, kErrorUnit, rounded to nearest
-  float lod_near = 0, lod_far = 0;  // metres, the report's ranges; both 0 where none are set
-  std::uint32_t valid_posts = 0;  // of this node, without the ring
+  float lod_near = 0, lod_far = 0;                // metres, the report's ranges; both 0 where none are set
+  std::uint32_t valid_posts = 0;                  // of this node, without the ring
 
   bool operator==(const NodeRecord&) const = default;
   bool isEmpty() const { return (flags & kNodeIsEmpty) != 0; }

@@ -49,7 +49,8 @@ std::vector<std::byte> encodeTerrainBlock(const TerrainBlock& block) {
   return writer.take();
 }
 
-Result<TerrainBlock> decodeTerrainBlock(std::span<const std::byte> bytes, std::uint32_t leaf_cells, const std::string& where) {
+Result<TerrainBlock> decodeTerrainBlock(std::span<const std::byte> bytes, std::uint32_t leaf_cells,
+                                        const std::string& where) {
   const auto damaged = [&](const char* why) {
     return invalidError(IssueCode::kHgtDecode, where, "the terrain block cannot be decoded", why);
   };
@@ -73,27 +74,31 @@ Result<TerrainBlock> decodeTerrainBlock(std::span<const std::byte> bytes, std::u
     if (reader.get<std::uint8_t>() != 0) return damaged("a reserved byte is not zero");
   }
   const std::uint32_t most_posts = leaf_cells + 1;
-  if (prediction > static_cast<std::uint8_t>(Prediction::kParent)) return damaged("its prediction is unknown");
+  if (prediction > static_cast<std::uint8_t>(Prediction::kParent))
+    return damaged("its prediction is unknown");
   if (prediction == static_cast<std::uint8_t>(Prediction::kParent)) {
-    return newerFormatError(IssueCode::kHdrFeatureUnknown, where, "the terrain is predicted from its parent", "Use a newer deltaz");
+    return newerFormatError(IssueCode::kHdrFeatureUnknown, where, "the terrain is predicted from its parent",
+                            "Use a newer deltaz");
   }
   if (block.columns > most_posts || block.rows > most_posts ||
       block.first_column + std::uint32_t{block.columns} > most_posts ||
       block.first_row + std::uint32_t{block.rows} > most_posts) {
     return damaged("it has more posts than a node can have");
   }
-  if (!(block.spacing_x > 0) || !(block.spacing_y > 0) || block.quantum.numerator <= 0 || block.quantum.denominator <= 0 ||
-      ancestor_count > kMaximumAncestors) {
+  if (!(block.spacing_x > 0) || !(block.spacing_y > 0) || block.quantum.numerator <= 0 ||
+      block.quantum.denominator <= 0 || ancestor_count > kMaximumAncestors) {
     return damaged("its header has a wrong value");
   }
-  if (reader.remaining() < packed_length || reader.remaining() - packed_length != ancestor_count * kAncestorBytes) {
+  if (reader.remaining() < packed_length ||
+      reader.remaining() - packed_length != ancestor_count * kAncestorBytes) {
     return damaged("its parts do not add up to its length");
   }
-  DELTAZ_TRY_ASSIGN(HeightArray array, unpackHeights(reader.rest().first(packed_length), packing, block.columns + 2u,
-                                                     block.rows + 2u, where));
+  DELTAZ_TRY_ASSIGN(HeightArray array, unpackHeights(reader.rest().first(packed_length), packing,
+                                                     block.columns + 2u, block.rows + 2u, where));
   reader.skip(packed_length);
   for (const std::int32_t height : array.heights) {
-    if (height > kMaximumHeightQuanta || height < -kMaximumHeightQuanta) return damaged("a height is out of range");
+    if (height > kMaximumHeightQuanta || height < -kMaximumHeightQuanta)
+      return damaged("a height is out of range");
   }
   block.heights = std::move(array.heights);
   block.valid = std::move(array.valid);

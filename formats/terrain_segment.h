@@ -1,9 +1,9 @@
-// Terrain segments (the report's TED header and TED data): one block per node, a header and the delta-z array.
-// Specified in terrain_segment.md.
+// Terrain segments (the report's TED header and TED data): one block per node, a header and the delta-z
+// array. Specified in terrain_segment.md.
 //
-// The array holds the node's posts and a one-post ring of its neighbours' heights, so that vertex normals need no
-// other node. Post (0,0) is absolute, the rest of the first column relative to the south neighbour, everything else
-// relative to the west neighbour (report 5.1.4, Fig 48): integers, so prefix sums are exact.
+// The array holds the node's posts and a one-post ring of its neighbours' heights, so that vertex normals
+// need no other node. Post (0,0) is absolute, the rest of the first column relative to the south neighbour,
+// everything else relative to the west neighbour (report 5.1.4, Fig 48): integers, so prefix sums are exact.
 // Errors: kInvalid with kHgtDecode. Thread-safety: pure functions.
 #pragma once
 
@@ -28,9 +28,9 @@ enum class Prediction : std::uint8_t { kNone = 0, kParent = 1 };
 
 // Error of one ancestor level over the posts of a leaf, kept so that a patch need not re-read the area.
 struct AncestorError {
-  std::uint32_t maximum = 0;            // kErrorUnit, rounded up
-  std::uint64_t sum_of_squares = 0;     // kErrorUnit squared, of errors rounded to nearest
-  std::uint32_t posts = 0;              // how many posts were compared
+  std::uint32_t maximum = 0;         // kErrorUnit, rounded up
+  std::uint64_t sum_of_squares = 0;  // kErrorUnit squared, of errors rounded to nearest
+  std::uint32_t posts = 0;           // how many posts were compared
   bool operator==(const AncestorError&) const = default;
 };
 
@@ -43,8 +43,8 @@ struct TerrainBlock {
   Rational quantum;                     // metres
   Prediction predicted_from = Prediction::kNone;
   std::uint8_t normal_exponent = 2;
-  // (columns + 2) x (rows + 2), row by row from the south-west corner of the ring, quanta. What stands at a void
-  // post is undefined but equal for equal databases.
+  // (columns + 2) x (rows + 2), row by row from the south-west corner of the ring, quanta. What stands at a
+  // void post is undefined but equal for equal databases.
   std::vector<std::int32_t> heights;
   // 1 where the post is valid, else 0; same shape.
   std::vector<std::uint8_t> valid;
@@ -52,7 +52,8 @@ struct TerrainBlock {
   std::vector<AncestorError> ancestors;
 };
 
-// Pre: shapes as above, heights within kMaximumHeightQuanta. Equal blocks give equal bytes (with one zstd version).
+// Pre: shapes as above, heights within kMaximumHeightQuanta. Equal blocks give equal bytes (with one zstd
+// version).
 std::vector<std::byte> encodeTerrainBlock(const TerrainBlock& block);
 
 // `leaf_cells` bounds what is allocated: a block of more than leaf_cells + 1 posts a side is refused.

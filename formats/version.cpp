@@ -2,6 +2,8 @@
 
 namespace deltaz {
 
-std::string_view version() { return DELTAZ_VERSION; }
+std::string_view version() {
+  return DELTAZ_VERSION;
+}
 
 }  // namespace deltaz

@@ -1,8 +1,7 @@
 #include "libdb/access/database.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 
 namespace deltaz {
@@ -10,10 +9,12 @@ namespace deltaz {
 namespace {
 
 double errorInMetres(std::uint32_t units) {
-  return units == kUnknownError ? std::numeric_limits<double>::infinity() : static_cast<double>(units) * kErrorUnit;
+  return units == kUnknownError ? std::numeric_limits<double>::infinity()
+                                : static_cast<double>(units) * kErrorUnit;
 }
 
-Node makeNode(std::uint32_t number, const NodeRecord& record, const std::array<std::int64_t, 3>& parent_centroid) {
+Node makeNode(std::uint32_t number, const NodeRecord& record,
+              const std::array<std::int64_t, 3>& parent_centroid) {
   Node node;
   node.number = number;
   node.record = record;
@@ -30,7 +31,8 @@ Result<std::unique_ptr<ContainerReader>> openReferenced(const FileSystem& files,
   const std::string path = joinPath(folder, reference.name);
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
   if (type == PathType::kAbsent) {
-    Error error = accessError(path, "a file of the database is missing", {}, "Restore it or rebuild the database");
+    Error error =
+        accessError(path, "a file of the database is missing", {}, "Restore it or rebuild the database");
     error.kind = ErrorKind::kInvalid;
     error.code = IssueCode::kIoMissingFile;
     return error;
@@ -39,48 +41,62 @@ Result<std::unique_ptr<ContainerReader>> openReferenced(const FileSystem& files,
   DELTAZ_TRY_ASSIGN(ContainerReader reader, ContainerReader::open(files, path, kind));
   if (reader.identity().length != reference.length || reader.identity().id != reference.id) {
     return invalidError(IssueCode::kManFileMismatch, path, "the file is not the one area.json names",
-                        "it belongs to another database or another state of this one", "Restore it or rebuild the database");
+                        "it belongs to another database or another state of this one",
+                        "Restore it or rebuild the database");
   }
   return std::make_unique<ContainerReader>(std::move(reader));
 }
 
-// What is wrong with `child` as a child of `parent`; empty if nothing. A tree that passes here has as many nodes as
-// records, however it was damaged.
-std::string faultOfChild(const NodeRecord& parent, const NodeRecord& child, const std::vector<GridHeader>& grids) {
+// What is wrong with `child` as a child of `parent`; empty if nothing. A tree that passes here has as many
+// nodes as records, however it was damaged.
+std::string faultOfChild(const NodeRecord& parent, const NodeRecord& child,
+                         const std::vector<GridHeader>& grids) {
   if (child.grid >= grids.size()) return "it names a grid that is not there";
   if (parent.type == NodeType::kTerrain) {
-    const bool below = child.type == NodeType::kTerrain && child.grid == parent.grid && child.level + 1 == parent.level &&
-                       (child.x >> 1) == parent.x && (child.y >> 1) == parent.y;
+    const bool below = child.type == NodeType::kTerrain && child.grid == parent.grid &&
+                       child.level + 1 == parent.level && (child.x >> 1) == parent.x &&
+                       (child.y >> 1) == parent.y;
     return below ? "" : "its level or place is not below its parent's";
   }
   if (child.type == NodeType::kTerrain) {
-    return child.level + 1 == grids[child.grid].level_count ? "" : "its level is not the coarsest of its grid";
+    return child.level + 1 == grids[child.grid].level_count ? ""
+                                                            : "its level is not the coarsest of its grid";
   }
-  return child.level == grids[child.grid].level_count && parent.level == kAreaLevel ? "" : "a cluster stands under a grid";
+  return child.level == grids[child.grid].level_count && parent.level == kAreaLevel
+             ? ""
+             : "a cluster stands under a grid";
 }
 
 }  // namespace
 
-double Node::geometricError() const { return errorInMetres(record.geometric_error); }
-double Node::coverageError() const { return errorInMetres(record.coverage_error); }
+double Node::geometricError() const {
+  return errorInMetres(record.geometric_error);
+}
+double Node::coverageError() const {
+  return errorInMetres(record.coverage_error);
+}
 
 Result<Database> Database::open(const FileSystem& files, const std::string& path) {
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
-  if (type == PathType::kAbsent) return accessError(path, "cannot open the database", "there is no such folder");
+  if (type == PathType::kAbsent)
+    return accessError(path, "cannot open the database", "there is no such folder");
   if (type != PathType::kDirectory) {
-    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database", "a database is a folder");
+    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database",
+                        "a database is a folder");
   }
   const std::string area_path = joinPath(path, std::string(kAreaFileName));
   DELTAZ_TRY_ASSIGN(const PathType area_type, files.typeOf(area_path));
   if (area_type == PathType::kAbsent) {
-    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database", "there is no area.json in it");
+    return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database",
+                        "there is no area.json in it");
   }
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> text, readWholeFile(files, area_path, kMaximumAreaBytes));
   Database database;
   database.path_ = path;
   database.area_bytes_ = text.size();
   std::string characters(text.size(), '\0');
-  std::transform(text.begin(), text.end(), characters.begin(), [](std::byte b) { return static_cast<char>(b); });
+  std::transform(text.begin(), text.end(), characters.begin(),
+                 [](std::byte b) { return static_cast<char>(b); });
   DELTAZ_TRY_ASSIGN(database.area_, parseArea(characters, area_path));
   for (const GridHeader& grid : database.area_.grids) database.grids_.emplace_back(grid);
 
@@ -100,8 +116,8 @@ Result<Database> Database::open(const FileSystem& files, const std::string& path
   const std::uint32_t pages = (database.area_.node_count + kNodesPerPage - 1) / kNodesPerPage;
   if (database.nodes_->blockCount() != pages) {
     return invalidError(IssueCode::kManField, area_path,
-                        fmt::format("{} records need {} pages, the node file has {}", database.area_.node_count, pages,
-                                    database.nodes_->blockCount()));
+                        fmt::format("{} records need {} pages, the node file has {}",
+                                    database.area_.node_count, pages, database.nodes_->blockCount()));
   }
   database.page_cache_ = std::make_unique<PageCache>();
   database.page_cache_->pages.resize(pages);
@@ -114,7 +130,8 @@ const ContainerReader* Database::terrainSegment(std::uint32_t segment) const {
 
 Result<NodeRecord> Database::record(std::uint32_t number) const {
   if (number == 0 || number > area_.node_count) {
-    return invalidError(IssueCode::kRefRange, nodes_->path(), fmt::format("there is no record {}; the last is {}", number, area_.node_count));
+    return invalidError(IssueCode::kRefRange, nodes_->path(),
+                        fmt::format("there is no record {}; the last is {}", number, area_.node_count));
   }
   const std::uint32_t page_number = (number - 1) / kNodesPerPage;
   const std::size_t slot = (number - 1) % kNodesPerPage;
@@ -123,8 +140,10 @@ Result<NodeRecord> Database::record(std::uint32_t number) const {
     if (const auto& page = page_cache_->pages[page_number]) return (*page)[slot];
   }
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, nodes_->read(page_number, BlockType::kNodePage));
-  DELTAZ_TRY_ASSIGN(std::vector<NodeRecord> records, decodeNodePage(bytes, fmt::format("{}, block {}", nodes_->path(), page_number)));
-  const std::size_t expected = std::min<std::size_t>(kNodesPerPage, area_.node_count - page_number * kNodesPerPage);
+  DELTAZ_TRY_ASSIGN(std::vector<NodeRecord> records,
+                    decodeNodePage(bytes, fmt::format("{}, block {}", nodes_->path(), page_number)));
+  const std::size_t expected =
+      std::min<std::size_t>(kNodesPerPage, area_.node_count - page_number * kNodesPerPage);
   if (records.size() != expected) {
     return invalidError(IssueCode::kRefRecord, nodes_->path(),
                         fmt::format("page {} has {} records, not {}", page_number, records.size(), expected));
@@ -145,17 +164,21 @@ Result<Node> Database::root() const {
 
 Result<std::vector<Node>> Database::children(const Node& parent) const {
   // Clusters may have any number of children up to the number of grids; quadtree nodes at most four.
-  const std::size_t most = parent.record.type == NodeType::kCluster ? std::max<std::size_t>(4, area_.grids.size()) : 4;
+  const std::size_t most =
+      parent.record.type == NodeType::kCluster ? std::max<std::size_t>(4, area_.grids.size()) : 4;
   std::vector<Node> nodes;
   for (std::uint32_t number = parent.record.first_child; number != 0;) {
     // Children always stand behind their parent and in order, so a damaged file cannot lead in circles.
     const std::uint32_t before = nodes.empty() ? parent.number : nodes.back().number;
     if (number <= before || nodes.size() == most) {
-      return invalidError(IssueCode::kRefCycle, nodes_->path(), fmt::format("the children of record {} do not end", parent.number));
+      return invalidError(IssueCode::kRefCycle, nodes_->path(),
+                          fmt::format("the children of record {} do not end", parent.number));
     }
     DELTAZ_TRY_ASSIGN(const NodeRecord child, record(number));
     if (const std::string fault = faultOfChild(parent.record, child, area_.grids); !fault.empty()) {
-      return invalidError(IssueCode::kRefChild, nodes_->path(), fmt::format("record {} cannot be a child of record {}", number, parent.number), fault);
+      return invalidError(IssueCode::kRefChild, nodes_->path(),
+                          fmt::format("record {} cannot be a child of record {}", number, parent.number),
+                          fault);
     }
     nodes.push_back(makeNode(number, child, parent.centroid_units));
     number = child.sibling;
@@ -166,7 +189,8 @@ Result<std::vector<Node>> Database::children(const Node& parent) const {
 Result<TerrainBlock> Database::terrainBlock(const NodeRecord& record) const {
   const ContainerReader* segment = terrainSegment(record.segment);
   if (segment == nullptr || record.type != NodeType::kTerrain || record.grid >= area_.grids.size()) {
-    return invalidError(IssueCode::kRefData, nodes_->path(), fmt::format("a node names terrain segment {}, which is not there", record.segment));
+    return invalidError(IssueCode::kRefData, nodes_->path(),
+                        fmt::format("a node names terrain segment {}, which is not there", record.segment));
   }
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, segment->read(record.block, BlockType::kTerrainNode));
   return decodeTerrainBlock(bytes, static_cast<std::uint32_t>(area_.grids[record.grid].leaf_cells),
@@ -190,9 +214,11 @@ Result<TerrainTile> Database::terrain(const Node& node) const {
   const PostRange columns = geometry.nodePosts(geometry.columnsAt(tile.level), tile.x);
   const PostRange rows = geometry.nodePosts(geometry.rowsAt(tile.level), tile.y);
   if (tile.columns != columns.size() || tile.rows != rows.size() ||
-      (tile.columns > 0 && tile.first_column != columns.begin) || (tile.rows > 0 && tile.first_row != rows.begin)) {
-    return invalidError(IssueCode::kTileGrid, terrainSegment(node.record.segment)->path(),
-                        fmt::format("block {} does not hold the posts of record {}", node.record.block, node.number));
+      (tile.columns > 0 && tile.first_column != columns.begin) ||
+      (tile.rows > 0 && tile.first_row != rows.begin)) {
+    return invalidError(
+        IssueCode::kTileGrid, terrainSegment(node.record.segment)->path(),
+        fmt::format("block {} does not hold the posts of record {}", node.record.block, node.number));
   }
   tile.heights = std::move(block.heights);
   tile.valid = std::move(block.valid);

@@ -1,7 +1,8 @@
-// Opens a database and reads what is asked for: node records by page, terrain node by node. Everything read is
-// verified; what fails is an error, never a wrong height.
+// Opens a database and reads what is asked for: node records by page, terrain node by node. Everything read
+// is verified; what fails is an error, never a wrong height.
 //
-// Cost of open: area.json and the header and footer of each file. Thread-safety: const members from any thread.
+// Cost of open: area.json and the header and footer of each file. Thread-safety: const members from any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ inline constexpr std::uint32_t kRootRecord = 1;
 struct Node {
   std::uint32_t number = 0;  // record number
   NodeRecord record;
-  Vector3 centroid;          // Earth-centred, metres, exact
+  Vector3 centroid;                              // Earth-centred, metres, exact
   std::array<std::int64_t, 3> centroid_units{};  // the same in kCentroidUnit
   double radius() const { return static_cast<double>(record.radius) * kCentroidUnit; }
   // Metres; infinity when unknown.

@@ -58,11 +58,13 @@ RowStep rowStep(const EllipsoidShape& ellipsoid, double from_degrees, double to_
   const SineCosine step = stepOf(from_degrees, to_degrees);
   const double from_root = std::sqrt(1 - e2 * from.sine * from.sine);
   const double to_root = std::sqrt(1 - e2 * to.sine * to.sine);
-  // N = semi-major / root, and its change, where the difference of the roots' squares is e2 (to^2 - from^2) of the sines.
+  // N = semi-major / root, and its change, where the difference of the roots' squares is e2 (to^2 - from^2)
+  // of the sines.
   const double to_n = ellipsoid.semi_major_axis / to_root;
   const double n_step = ellipsoid.semi_major_axis * e2 * step.sine * (to.sine + from.sine) /
                         (from_root * to_root * (from_root + to_root));
-  return {to_n * step.cosine + n_step * from.cosine, step.cosine, (1 - e2) * (to_n * step.sine + n_step * from.sine), step.sine};
+  return {to_n * step.cosine + n_step * from.cosine, step.cosine,
+          (1 - e2) * (to_n * step.sine + n_step * from.sine), step.sine};
 }
 
 ColumnStep columnStep(double from_degrees, double to_degrees) {

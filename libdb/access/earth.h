@@ -1,10 +1,9 @@
-// Positions on the curved Earth. On a geodetic grid Earth-centred coordinates are separable: a term of the row, a term
-// of the column, and the height.
+// Positions on the curved Earth. On a geodetic grid Earth-centred coordinates are separable: a term of the
+// row, a term of the column, and the height.
 //   x = (a + b h) cos(lon),  y = (a + b h) sin(lon),  z = c + s h
 //   a = N cos(lat), b = cos(lat), c = N (1 - e^2) sin(lat), s = sin(lat),  N = semi-major / sqrt(1 - e^2 s^2)
-// Exact but for the rounding of doubles (below 4e-9 m). Sines and cosines of degrees are GeographicLib's, so that the
-// poles and the quarter meridians are exact.
-// Thread-safety: pure functions.
+// Exact but for the rounding of doubles (below 4e-9 m). Sines and cosines of degrees are GeographicLib's, so
+// that the poles and the quarter meridians are exact. Thread-safety: pure functions.
 #pragma once
 
 #include "formats/area.h"
@@ -28,9 +27,9 @@ inline Vector3 earthCentred(const RowConstants& row, const ColumnConstants& colu
   return {distance * column.cosine, distance * column.sine, row.c + row.s * height};
 }
 
-// What row and column constants change by from one latitude or longitude to another, each to a few units in its own last
-// place, however close the two are: subtracting the constants would leave 1e-9 m of noise, which is as much as the
-// spacing of posts beside a pole.
+// What row and column constants change by from one latitude or longitude to another, each to a few units in
+// its own last place, however close the two are: subtracting the constants would leave 1e-9 m of noise, which
+// is as much as the spacing of posts beside a pole.
 struct RowStep {
   double a = 0, b = 0, c = 0, s = 0;
 };

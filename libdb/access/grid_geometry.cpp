@@ -4,13 +4,17 @@
 
 namespace deltaz {
 
-std::int64_t floorDivide(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
-std::int64_t ceilDivide(std::int64_t a, std::int64_t b) { return -floorDivide(-a, b); }
+std::int64_t floorDivide(std::int64_t a, std::int64_t b) {
+  return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+std::int64_t ceilDivide(std::int64_t a, std::int64_t b) {
+  return -floorDivide(-a, b);
+}
 
 double postDegrees(const GridAxis& axis, double origin, std::int64_t global) {
   if (axis.exact_spacing && axis.phase == 0) {
-    // Whole arc-second fractions: the division is the only rounding, so that post 1200 of 3" is 1 degree exactly. The
-    // origin is brought to the same denominator first.
+    // Whole arc-second fractions: the division is the only rounding, so that post 1200 of 3" is 1 degree
+    // exactly. The origin is brought to the same denominator first.
     const std::int64_t numerator = axis.exact_spacing->numerator;
     const std::int64_t denominator = axis.exact_spacing->denominator;
     const double steps = static_cast<double>(global) * static_cast<double>(numerator) +
@@ -37,16 +41,26 @@ PostRange nodeRangeAt(const GridAxis& axis, int leaf_cells, int level) {
 
 GridGeometry::GridGeometry(const GridHeader& grid) : grid_(grid), quantum_(grid.quantum.value()) {}
 
-double GridGeometry::longitude(std::int64_t global_column) const { return postDegrees(grid_.longitude, -180.0, global_column); }
+double GridGeometry::longitude(std::int64_t global_column) const {
+  return postDegrees(grid_.longitude, -180.0, global_column);
+}
 double GridGeometry::latitude(std::int64_t global_row) const {
   // A source may place its outermost row beyond the pole by a rounding error.
   return std::clamp(postDegrees(grid_.latitude, -90.0, global_row), -90.0, 90.0);
 }
 
-PostRange GridGeometry::columnsAt(int level) const { return rangeAt(grid_.longitude, level); }
-PostRange GridGeometry::rowsAt(int level) const { return rangeAt(grid_.latitude, level); }
-PostRange GridGeometry::nodeColumnsAt(int level) const { return nodeRangeAt(grid_.longitude, grid_.leaf_cells, level); }
-PostRange GridGeometry::nodeRowsAt(int level) const { return nodeRangeAt(grid_.latitude, grid_.leaf_cells, level); }
+PostRange GridGeometry::columnsAt(int level) const {
+  return rangeAt(grid_.longitude, level);
+}
+PostRange GridGeometry::rowsAt(int level) const {
+  return rangeAt(grid_.latitude, level);
+}
+PostRange GridGeometry::nodeColumnsAt(int level) const {
+  return nodeRangeAt(grid_.longitude, grid_.leaf_cells, level);
+}
+PostRange GridGeometry::nodeRowsAt(int level) const {
+  return nodeRangeAt(grid_.latitude, grid_.leaf_cells, level);
+}
 
 PostRange GridGeometry::nodePosts(PostRange level_posts, std::int32_t node_index) const {
   const std::int64_t first = static_cast<std::int64_t>(node_index) * grid_.leaf_cells;
@@ -65,7 +79,8 @@ std::vector<RowConstants> GridGeometry::rowConstantsOf(int level, PostRange rang
 std::vector<ColumnConstants> GridGeometry::columnConstantsOf(int level, PostRange range) const {
   std::vector<ColumnConstants> columns;
   columns.reserve(static_cast<std::size_t>(range.size()));
-  for (std::int64_t g = range.begin; g < range.end; ++g) columns.push_back(columnConstants(longitude(g * (std::int64_t{1} << level))));
+  for (std::int64_t g = range.begin; g < range.end; ++g)
+    columns.push_back(columnConstants(longitude(g * (std::int64_t{1} << level))));
   return columns;
 }
 

@@ -1,6 +1,6 @@
-// Where the posts and nodes of a grid lie. Leaf and level boundaries are at global multiples: post g of level k is the
-// post g * 2^k of level 0, and node (x, y) of level k covers posts x * leaf .. (x + 1) * leaf of that level.
-// Cost: constant per call. Thread-safety: const members from any thread.
+// Where the posts and nodes of a grid lie. Leaf and level boundaries are at global multiples: post g of level
+// k is the post g * 2^k of level 0, and node (x, y) of level k covers posts x * leaf .. (x + 1) * leaf of
+// that level. Cost: constant per call. Thread-safety: const members from any thread.
 #pragma once
 
 #include <cstdint>

@@ -12,16 +12,21 @@ constexpr std::array<Step, 6> kNeighbourSteps = {{{1, 0}, {1, 1}, {0, 1}, {-1, 0
 // D^p for the exponents that matter; D from its square.
 double distancePower(double squared, int exponent) {
   switch (exponent) {
-    case 0: return 1.0;
-    case 2: return squared;
-    case 4: return squared * squared;
-    default: return std::pow(squared, 0.5 * exponent);
+    case 0:
+      return 1.0;
+    case 2:
+      return squared;
+    case 4:
+      return squared * squared;
+    default:
+      return std::pow(squared, 0.5 * exponent);
   }
 }
 
 }  // namespace
 
-Vector3 table11Normal(const std::array<VertexNeighbour, 6>& neighbours, const Vector3& fallback, int exponent) {
+Vector3 table11Normal(const std::array<VertexNeighbour, 6>& neighbours, const Vector3& fallback,
+                      int exponent) {
   Vector3 sum;
   for (std::size_t k = 0; k < neighbours.size(); ++k) {
     const VertexNeighbour& first = neighbours[k];
@@ -40,8 +45,8 @@ Vector3 table11Normal(const std::array<VertexNeighbour, 6>& neighbours, const Ve
 
 namespace {
 
-// The vectors from a tile's posts to their neighbours, computed as differences from the start: as exact beside a pole,
-// where posts stand a fraction of a millimetre apart, as anywhere else.
+// The vectors from a tile's posts to their neighbours, computed as differences from the start: as exact
+// beside a pole, where posts stand a fraction of a millimetre apart, as anywhere else.
 class PostOffsets {
  public:
   PostOffsets(const TerrainTile& tile, const GridGeometry& geometry) : tile_(tile), geometry_(geometry) {
@@ -55,7 +60,8 @@ class PostOffsets {
       column_steps_.push_back(columnStep(geometry.longitude(g * step), geometry.longitude((g + 1) * step)));
     }
     for (std::int64_t g = rows.begin; g + 1 < rows.end; ++g) {
-      row_steps_.push_back(rowStep(ellipsoid, geometry.latitude(g * step), geometry.latitude((g + 1) * step)));
+      row_steps_.push_back(
+          rowStep(ellipsoid, geometry.latitude(g * step), geometry.latitude((g + 1) * step)));
     }
   }
 
@@ -74,7 +80,8 @@ class PostOffsets {
     const RowStep& r = dj == 0 ? none : row_steps_[static_cast<std::size_t>(dj > 0 ? j + 1 : j)];
     const ColumnStep no_step;
     const ColumnStep& c = di == 0 ? no_step : column_steps_[static_cast<std::size_t>(di > 0 ? i + 1 : i)];
-    // Products of constants and heights change by the constant's change times one height plus the height's times the other.
+    // Products of constants and heights change by the constant's change times one height plus the height's
+    // times the other.
     const double rise = to_height - from_height;
     const double distance = from_row.a + from_row.b * from_height;
     const double distance_step = row_sign * (r.a + r.b * from_height) + to_row.b * rise;

@@ -1,16 +1,15 @@
 #include "libdb/build/build_terrain.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numbers>
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <vector>
 
 #include "formats/container.h"
@@ -32,9 +31,10 @@ constexpr std::size_t kNodesPerBatch = 512;
 template <typename Work>
 void inParallel(tbb::task_arena& arena, std::size_t count, const Work& work) {
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const tbb::blocked_range<std::size_t>& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+                      });
   });
 }
 
@@ -51,9 +51,14 @@ struct NodeFacts {
 class TerrainBuild {
  public:
   TerrainBuild(const FileSystem& files, const RawGrid& grid, const BuildOptions& options)
-      : files_(files), grid_(grid), options_(options), header_(grid.header), geometry_(makeHeader(grid, options)),
+      : files_(files),
+        grid_(grid),
+        options_(options),
+        header_(grid.header),
+        geometry_(makeHeader(grid, options)),
         // More threads than the machine has would only wait for each other.
-        arena_(options.threads > 0 ? std::min(options.threads, tbb::info::default_concurrency()) : tbb::task_arena::automatic) {
+        arena_(options.threads > 0 ? std::min(options.threads, tbb::info::default_concurrency())
+                                   : tbb::task_arena::automatic) {
     plan_ = planPyramid(geometry_);
     header_ = geometry_.header();
     header_.level_count = plan_.level_count;
@@ -97,7 +102,8 @@ class TerrainBuild {
   }
 
   void measureTiles() {
-    inParallel(arena_, plan_.nodes.size(), [&](std::size_t i) { facts_[i].summary = summarizeTile(tileOf(i), geometry_); });
+    inParallel(arena_, plan_.nodes.size(),
+               [&](std::size_t i) { facts_[i].summary = summarizeTile(tileOf(i), geometry_); });
     steepest_.assign(static_cast<std::size_t>(plan_.level_count), 0.0);
     for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
       double& steepest = steepest_[static_cast<std::size_t>(plan_.nodes[i].level)];
@@ -130,12 +136,14 @@ class TerrainBuild {
       const PlannedNode& node = plan_.nodes[i];
       if (node.child_count == 0) continue;
       std::vector<NodeBounds> children;
-      for (std::uint32_t c = 0; c < node.child_count; ++c) children.push_back(facts_[node.first_child + c].summary.bounds);
+      for (std::uint32_t c = 0; c < node.child_count; ++c)
+        children.push_back(facts_[node.first_child + c].summary.bounds);
       includeChildren(facts_[i].summary.bounds, children);
     }
     std::vector<NodeBounds> top;
     const int top_level = plan_.level_count - 1;
-    for (std::size_t i = levelBegin(top_level); i < levelEnd(top_level); ++i) top.push_back(facts_[i].summary.bounds);
+    for (std::size_t i = levelBegin(top_level); i < levelEnd(top_level); ++i)
+      top.push_back(facts_[i].summary.bounds);
     includeChildren(grid_bounds_, top);
   }
 
@@ -145,7 +153,8 @@ class TerrainBuild {
     TerrainBlock block;
     block.columns = static_cast<std::uint16_t>(tile.columns);
     block.rows = static_cast<std::uint16_t>(tile.rows);
-    block.first_column = static_cast<std::uint16_t>(tile.first_column - std::int64_t{node.x} * header_.leaf_cells);
+    block.first_column =
+        static_cast<std::uint16_t>(tile.first_column - std::int64_t{node.x} * header_.leaf_cells);
     block.first_row = static_cast<std::uint16_t>(tile.first_row - std::int64_t{node.y} * header_.leaf_cells);
     const double scale = static_cast<double>(std::int64_t{1} << node.level);
     block.spacing_x = header_.longitude.spacing_degrees * scale;
@@ -175,14 +184,17 @@ class TerrainBuild {
       for (std::size_t i = 0; i < count; ++i) {
         if (!writer) {
           name = fmt::format("terrain-{:06}-{:03}.dzt", publication.generation(), segment);
-          DELTAZ_TRY_ASSIGN(ContainerWriter created, ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kTerrain));
+          DELTAZ_TRY_ASSIGN(
+              ContainerWriter created,
+              ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kTerrain));
           writer.emplace(std::move(created));
         }
         facts_[first + i].segment = segment;
         DELTAZ_TRY_ASSIGN(facts_[first + i].block, writer->append(BlockType::kTerrainNode, blocks[i]));
         if (writer->size() >= kSegmentBytes) DELTAZ_TRY(finishSegment());
       }
-      report("terrain", 0.6 + 0.35 * static_cast<double>(first + count) / static_cast<double>(plan_.nodes.size()));
+      report("terrain",
+             0.6 + 0.35 * static_cast<double>(first + count) / static_cast<double>(plan_.nodes.size()));
     }
     if (writer) DELTAZ_TRY(finishSegment());
     return Success{};
@@ -199,9 +211,9 @@ class TerrainBuild {
     record.x = node.x;
     record.y = node.y;
     record.first_child = node.child_count == 0 ? 0 : recordNumber(node.first_child);
-    const bool last = node.parent == kNoNode
-                          ? index + 1 == levelEnd(node.level)
-                          : index + 1 == plan_.nodes[node.parent].first_child + plan_.nodes[node.parent].child_count;
+    const bool last = node.parent == kNoNode ? index + 1 == levelEnd(node.level)
+                                             : index + 1 == plan_.nodes[node.parent].first_child +
+                                                                plan_.nodes[node.parent].child_count;
     record.sibling = last ? 0 : recordNumber(index + 1);
     record.segment = facts.segment;
     record.block = facts.block;
@@ -215,12 +227,14 @@ class TerrainBuild {
 
   static std::uint32_t recordNumber(std::size_t index) { return static_cast<std::uint32_t>(index + 3); }
 
-  static void putBounds(NodeRecord& record, const NodeBounds& bounds, const std::array<std::int64_t, 3>& parent_centroid) {
+  static void putBounds(NodeRecord& record, const NodeBounds& bounds,
+                        const std::array<std::int64_t, 3>& parent_centroid) {
     if (bounds.empty) {
       record.flags |= kNodeIsEmpty;
       return;
     }
-    for (std::size_t k = 0; k < 3; ++k) record.centroid_offset[k] = static_cast<std::int32_t>(bounds.centroid[k] - parent_centroid[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      record.centroid_offset[k] = static_cast<std::int32_t>(bounds.centroid[k] - parent_centroid[k]);
     record.radius = bounds.radius;
     record.minimum_height = bounds.minimum_height;
     record.maximum_height = bounds.maximum_height;
@@ -237,10 +251,12 @@ class TerrainBuild {
     if (facts.summary.facets == 0) return;
     const double slack = betweenPostsSlack(geometry_, node.level, steepest_) / kErrorUnit;
     const double error = std::ceil(static_cast<double>(facts.maximum_error) + slack);
-    if (error < static_cast<double>(kUnknownError)) record.geometric_error = static_cast<std::uint32_t>(error);
+    if (error < static_cast<double>(kUnknownError))
+      record.geometric_error = static_cast<std::uint32_t>(error);
     if (facts.compared_posts > 0) {
       const double rms = std::sqrt(facts.sum_of_squares / static_cast<double>(facts.compared_posts));
-      record.rms_error = static_cast<std::uint32_t>(std::min(std::round(rms), static_cast<double>(kUnknownError - 1)));
+      record.rms_error =
+          static_cast<std::uint32_t>(std::min(std::round(rms), static_cast<double>(kUnknownError - 1)));
     }
   }
 
@@ -259,18 +275,21 @@ class TerrainBuild {
     std::vector<NodeRecord> records;
     records.reserve(plan_.nodes.size() + 2);
     NodeRecord area = clusterRecord(kAreaLevel, 2);
-    area.minimum_height = static_cast<std::int32_t>(std::floor(geometry_.metres(grid_bounds_.minimum_height)));
+    area.minimum_height =
+        static_cast<std::int32_t>(std::floor(geometry_.metres(grid_bounds_.minimum_height)));
     area.maximum_height = static_cast<std::int32_t>(std::ceil(geometry_.metres(grid_bounds_.maximum_height)));
     records.push_back(area);
     records.push_back(clusterRecord(static_cast<std::uint8_t>(plan_.level_count), recordNumber(0)));
     for (std::size_t i = 0; i < plan_.nodes.size(); ++i) records.push_back(recordOf(i));
 
     const std::string name = fmt::format("nodes-{:06}.dzn", publication.generation());
-    DELTAZ_TRY_ASSIGN(ContainerWriter writer, ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kNodes));
+    DELTAZ_TRY_ASSIGN(ContainerWriter writer,
+                      ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kNodes));
     for (std::size_t first = 0; first < records.size(); first += kNodesPerPage) {
       const std::span<const NodeRecord> page =
           std::span(records).subspan(first, std::min<std::size_t>(kNodesPerPage, records.size() - first));
-      DELTAZ_TRY_ASSIGN([[maybe_unused]] const std::uint32_t block, writer.append(BlockType::kNodePage, encodeNodePage(page)));
+      DELTAZ_TRY_ASSIGN([[maybe_unused]] const std::uint32_t block,
+                        writer.append(BlockType::kNodePage, encodeNodePage(page)));
     }
     DELTAZ_TRY_ASSIGN(const FileIdentity identity, writer.finish());
     area_.files.insert(area_.files.begin(), {FileRole::kNodes, 0, name, identity.length, identity.id});
@@ -297,9 +316,12 @@ class TerrainBuild {
   double chordSag() const {
     constexpr double kRadians = std::numbers::pi / 180.0;
     const double scale = static_cast<double>(std::int64_t{1} << (plan_.level_count - 1)) * kRadians;
-    const double angle = std::hypot(header_.longitude.spacing_degrees, header_.latitude.spacing_degrees) * scale;
-    const double distance = header_.ellipsoid.semi_major_axis + std::abs(geometry_.metres(grid_bounds_.maximum_height));
-    return std::ceil(distance * (1.0 - std::cos(std::min(angle / 2, std::numbers::pi / 2))) / kErrorUnit) * kErrorUnit;
+    const double angle =
+        std::hypot(header_.longitude.spacing_degrees, header_.latitude.spacing_degrees) * scale;
+    const double distance =
+        header_.ellipsoid.semi_major_axis + std::abs(geometry_.metres(grid_bounds_.maximum_height));
+    return std::ceil(distance * (1.0 - std::cos(std::min(angle / 2, std::numbers::pi / 2))) / kErrorUnit) *
+           kErrorUnit;
   }
 
   BuildSummary summary() const {
@@ -307,12 +329,14 @@ class TerrainBuild {
     result.nodes = area_.node_count;
     result.levels = plan_.level_count;
     result.posts = grid_.heights.size();
-    result.voids = static_cast<std::uint64_t>(std::count(grid_.valid.begin(), grid_.valid.end(), std::uint8_t{0}));
+    result.voids =
+        static_cast<std::uint64_t>(std::count(grid_.valid.begin(), grid_.valid.end(), std::uint8_t{0}));
     for (const FileReference& file : area_.files) result.bytes += file.length;
     result.bytes += serializeArea(area_).size();
     const int top_level = plan_.level_count - 1;
     for (std::size_t i = levelBegin(top_level); i < levelEnd(top_level); ++i) {
-      result.largest_error = std::max(result.largest_error, static_cast<double>(facts_[i].maximum_error) * kErrorUnit);
+      result.largest_error =
+          std::max(result.largest_error, static_cast<double>(facts_[i].maximum_error) * kErrorUnit);
     }
     return result;
   }
@@ -332,10 +356,12 @@ class TerrainBuild {
 
 }  // namespace
 
-Result<BuildSummary> buildTerrain(const FileSystem& files, const RawGrid& grid, const std::string& target, const BuildOptions& options) {
+Result<BuildSummary> buildTerrain(const FileSystem& files, const RawGrid& grid, const std::string& target,
+                                  const BuildOptions& options) {
   if (options.leaf_cells < 8 || options.leaf_cells > static_cast<int>(kMaximumLeafCells) ||
       !std::has_single_bit(static_cast<unsigned>(options.leaf_cells))) {
-    return usageError("--leaf", fmt::format("{} cells", options.leaf_cells), "a leaf has a power of two of cells a side, from 8 to 1024");
+    return usageError("--leaf", fmt::format("{} cells", options.leaf_cells),
+                      "a leaf has a power of two of cells a side, from 8 to 1024");
   }
   try {
     return TerrainBuild(files, grid, options).run(target);

@@ -1,8 +1,8 @@
-// Builds a database from a grid of posts: leaves at global multiples, every coarser level as a subset, the ring,
-// bounds, normal cones and geometric errors, and publishes it whole or not at all.
+// Builds a database from a grid of posts: leaves at global multiples, every coarser level as a subset, the
+// ring, bounds, normal cones and geometric errors, and publishes it whole or not at all.
 //
-// The result does not depend on the number of threads. Cost: a few passes over the posts per level; memory about six
-// bytes a post beside the grid itself.
+// The result does not depend on the number of threads. Cost: a few passes over the posts per level; memory
+// about six bytes a post beside the grid itself.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ struct BuildSummary {
   std::uint32_t nodes = 0;
   int levels = 0;
   std::uint64_t posts = 0, voids = 0;
-  std::uint64_t bytes = 0;       // of all files published
-  double largest_error = 0;      // metres, of the coarsest level
+  std::uint64_t bytes = 0;   // of all files published
+  double largest_error = 0;  // metres, of the coarsest level
 };
 
 Result<BuildSummary> buildTerrain(const FileSystem& files, const RawGrid& grid, const std::string& target,

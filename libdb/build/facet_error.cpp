@@ -16,7 +16,8 @@ constexpr double kInsideTolerance = 1e-9;
 // Positions of the coarse posts around a leaf.
 class CoarseWindow {
  public:
-  CoarseWindow(const RawGrid& grid, const GridGeometry& geometry, int level, PostRange columns, PostRange rows)
+  CoarseWindow(const RawGrid& grid, const GridGeometry& geometry, int level, PostRange columns,
+               PostRange rows)
       : columns_(columns), rows_(rows) {
     const std::int64_t step = std::int64_t{1} << level;
     const std::vector<ColumnConstants> column_constants = geometry.columnConstantsOf(level, columns);
@@ -38,7 +39,8 @@ class CoarseWindow {
   }
 
   bool isValid(std::int64_t I, std::int64_t J) const {
-    return I >= columns_.begin && I < columns_.end && J >= rows_.begin && J < rows_.end && valid_[index(I, J)] != 0;
+    return I >= columns_.begin && I < columns_.end && J >= rows_.begin && J < rows_.end &&
+           valid_[index(I, J)] != 0;
   }
   const Vector3& position(std::int64_t I, std::int64_t J) const { return positions_[index(I, J)]; }
 
@@ -67,14 +69,15 @@ struct Facet {
     return {I, J, false};
   }
   bool isValid(const CoarseWindow& window) const {
-    return window.isValid(I, J) && window.isValid(I + 1, J + 1) && (top ? window.isValid(I, J + 1) : window.isValid(I + 1, J));
+    return window.isValid(I, J) && window.isValid(I + 1, J + 1) &&
+           (top ? window.isValid(I, J + 1) : window.isValid(I + 1, J));
   }
 };
 
 struct Pierce {
-  double height = 0;               // of the facet's plane above the ellipsoid, along the normal
+  double height = 0;  // of the facet's plane above the ellipsoid, along the normal
   double inside = -std::numeric_limits<double>::infinity();  // smallest barycentric coordinate; >= 0 inside
-  int nearest_vertex_across = 0;   // whose barycentric coordinate it is
+  int nearest_vertex_across = 0;                             // whose barycentric coordinate it is
   bool valid = false;
 };
 
@@ -83,8 +86,10 @@ Pierce pierce(const CoarseWindow& window, const Facet& facet, const Vector3& foo
   Pierce result;
   if (!facet.isValid(window)) return result;
   const Vector3& v0 = window.position(facet.I, facet.J);
-  const Vector3& v1 = facet.top ? window.position(facet.I + 1, facet.J + 1) : window.position(facet.I + 1, facet.J);
-  const Vector3& v2 = facet.top ? window.position(facet.I, facet.J + 1) : window.position(facet.I + 1, facet.J + 1);
+  const Vector3& v1 =
+      facet.top ? window.position(facet.I + 1, facet.J + 1) : window.position(facet.I + 1, facet.J);
+  const Vector3& v2 =
+      facet.top ? window.position(facet.I, facet.J + 1) : window.position(facet.I + 1, facet.J + 1);
   const Vector3 e1 = v1 - v0;
   const Vector3 e2 = v2 - v0;
   const Vector3 p = cross(up, e2);
@@ -103,7 +108,8 @@ Pierce pierce(const CoarseWindow& window, const Facet& facet, const Vector3& foo
   return result;
 }
 
-// The plan facets whose closure holds fine post (column, row): one, or two if the post lies on an edge between them.
+// The plan facets whose closure holds fine post (column, row): one, or two if the post lies on an edge
+// between them.
 int planFacets(std::int64_t column, std::int64_t row, std::int64_t step, std::array<Facet, 2>& facets) {
   const std::int64_t I = floorDivide(column, step);
   const std::int64_t J = floorDivide(row, step);
@@ -126,8 +132,8 @@ int planFacets(std::int64_t column, std::int64_t row, std::int64_t step, std::ar
 }
 
 // Where the coarse surface lies over a post; invalid if none is there.
-Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int64_t row, std::int64_t step, const Vector3& foot,
-                       const Vector3& up) {
+Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int64_t row, std::int64_t step,
+                       const Vector3& foot, const Vector3& up) {
   std::array<Facet, 2> candidates;
   const int count = planFacets(column, row, step, candidates);
   Pierce best = pierce(window, candidates[0], foot, up);
@@ -152,14 +158,15 @@ Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int
 
 }  // namespace
 
-std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& geometry, int level_count, std::int32_t x,
-                                      std::int32_t y) {
+std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& geometry, int level_count,
+                                      std::int32_t x, std::int32_t y) {
   const PostRange columns = geometry.nodePosts(geometry.columnsAt(0), x);
   const PostRange rows = geometry.nodePosts(geometry.rowsAt(0), y);
   const std::vector<ColumnConstants> column_constants = geometry.columnConstantsOf(0, columns);
   const std::vector<RowConstants> row_constants = geometry.rowConstantsOf(0, rows);
   const std::int64_t leaf = geometry.header().leaf_cells;
-  const std::int64_t owned_column_end = columns.end == geometry.columnsAt(0).end ? columns.end : (x + 1) * leaf;
+  const std::int64_t owned_column_end =
+      columns.end == geometry.columnsAt(0).end ? columns.end : (x + 1) * leaf;
   const std::int64_t owned_row_end = rows.end == geometry.rowsAt(0).end ? rows.end : (y + 1) * leaf;
 
   std::vector<AncestorError> errors(static_cast<std::size_t>(level_count - 1));
@@ -167,7 +174,8 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
     AncestorError& error = errors[static_cast<std::size_t>(level - 1)];
     const std::int64_t step = std::int64_t{1} << level;
     // One coarse cell more on each side, for posts whose facet is the next one.
-    const CoarseWindow window(grid, geometry, level, {floorDivide(columns.begin, step) - 1, floorDivide(columns.end - 1, step) + 3},
+    const CoarseWindow window(grid, geometry, level,
+                              {floorDivide(columns.begin, step) - 1, floorDivide(columns.end - 1, step) + 3},
                               {floorDivide(rows.begin, step) - 1, floorDivide(rows.end - 1, step) + 3});
     double maximum = 0;
     for (std::int64_t row = rows.begin; row < rows.end; ++row) {
@@ -177,12 +185,14 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
         double difference = 0;
         // A post of the coarse level is a corner of its facets: no difference.
         if (column % step != 0 || row % step != 0) {
-          const ColumnConstants& column_constant = column_constants[static_cast<std::size_t>(column - columns.begin)];
-          const Pierce surface = coarseSurfaceAt(window, column, row, step, earthCentred(row_constant, column_constant, 0),
-                                                 upVector(row_constant, column_constant));
+          const ColumnConstants& column_constant =
+              column_constants[static_cast<std::size_t>(column - columns.begin)];
+          const Pierce surface =
+              coarseSurfaceAt(window, column, row, step, earthCentred(row_constant, column_constant, 0),
+                              upVector(row_constant, column_constant));
           if (!surface.valid) continue;
-          const double height =
-              geometry.metres(grid.height(column - grid.header.longitude.first, row - grid.header.latitude.first));
+          const double height = geometry.metres(
+              grid.height(column - grid.header.longitude.first, row - grid.header.latitude.first));
           difference = std::abs(height - surface.height);
         }
         maximum = std::max(maximum, difference);
@@ -215,7 +225,8 @@ double betweenPostsSlack(const GridGeometry& geometry, int level, const std::vec
   const double scale = static_cast<double>(std::int64_t{1} << level);
   const double coarse_lon = fine_lon * scale;
   const double coarse_lat = fine_lat * scale;
-  const double bow = 1.25 * radius / 8 * largest_sine * coarse_lon * std::hypot(largest_cosine * coarse_lon, 2 * coarse_lat);
+  const double bow =
+      1.25 * radius / 8 * largest_sine * coarse_lon * std::hypot(largest_cosine * coarse_lon, 2 * coarse_lat);
   return within_facet + 4 * steepest[static_cast<std::size_t>(level)] * bow;
 }
 

@@ -14,17 +14,23 @@ constexpr double kConeUnit = std::numbers::pi / 65535.0;
 // Added before rounding up, to stay outside whatever the last bits of a distance or an angle were.
 constexpr double kRoundingGuard = 1e-6;
 
-std::int64_t toCentroidUnits(double metres) { return std::llround(metres / kCentroidUnit); }
+std::int64_t toCentroidUnits(double metres) {
+  return std::llround(metres / kCentroidUnit);
+}
 
 Vector3 fromCentroidUnits(const std::array<std::int64_t, 3>& units) {
   return {static_cast<double>(units[0]) * kCentroidUnit, static_cast<double>(units[1]) * kCentroidUnit,
           static_cast<double>(units[2]) * kCentroidUnit};
 }
 
-std::uint32_t radiusUnits(double metres) { return static_cast<std::uint32_t>(std::ceil(metres / kCentroidUnit + kRoundingGuard)); }
+std::uint32_t radiusUnits(double metres) {
+  return static_cast<std::uint32_t>(std::ceil(metres / kCentroidUnit + kRoundingGuard));
+}
 
 std::array<std::int16_t, 3> packNormal(const Vector3& normal) {
-  const auto pack = [](double component) { return static_cast<std::int16_t>(std::lround(component * 32767.0)); };
+  const auto pack = [](double component) {
+    return static_cast<std::int16_t>(std::lround(component * 32767.0));
+  };
   return {pack(normal.x), pack(normal.y), pack(normal.z)};
 }
 
@@ -33,26 +39,33 @@ std::uint16_t coneUnits(double angle) {
 }
 
 // Exact for small and for large angles, where the arc cosine of the dot product is not.
-double angleBetween(const Vector3& a, const Vector3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+double angleBetween(const Vector3& a, const Vector3& b) {
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
 
 }  // namespace
 
 Vector3 unpackNormal(const std::array<std::int16_t, 3>& packed) {
-  const Vector3 normal{static_cast<double>(packed[0]), static_cast<double>(packed[1]), static_cast<double>(packed[2])};
+  const Vector3 normal{static_cast<double>(packed[0]), static_cast<double>(packed[1]),
+                       static_cast<double>(packed[2])};
   const double size = length(normal);
   return size > 0 ? normal * (1.0 / size) : Vector3{1, 0, 0};
 }
 
-double coneAngle(std::uint16_t units) { return static_cast<double>(units) * kConeUnit; }
+double coneAngle(std::uint16_t units) {
+  return static_cast<double>(units) * kConeUnit;
+}
 
 TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry) {
   TileSummary summary;
   NodeBounds& bounds = summary.bounds;
   const std::vector<ColumnConstants> columns =
       geometry.columnConstantsOf(tile.level, {tile.first_column, tile.first_column + tile.columns});
-  const std::vector<RowConstants> rows = geometry.rowConstantsOf(tile.level, {tile.first_row, tile.first_row + tile.rows});
+  const std::vector<RowConstants> rows =
+      geometry.rowConstantsOf(tile.level, {tile.first_row, tile.first_row + tile.rows});
   const auto place = [&](int i, int j) {
-    return earthCentred(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)], geometry.metres(tile.height(i, j)));
+    return earthCentred(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)],
+                        geometry.metres(tile.height(i, j)));
   };
 
   Vector3 low, high;
@@ -91,7 +104,8 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
     normal_sum = normal_sum + normal;
     normals.push_back(normal * (1.0 / size));
     const double rise = dot(normals.back(), up);
-    const double slope = rise > 0 ? length(cross(normals.back(), up)) / rise : std::numeric_limits<double>::infinity();
+    const double slope =
+        rise > 0 ? length(cross(normals.back(), up)) / rise : std::numeric_limits<double>::infinity();
     summary.steepest = std::max(summary.steepest, slope);
   };
   for (int j = 0; j < tile.rows; ++j) {
@@ -143,7 +157,8 @@ void includeChildren(NodeBounds& parent, std::span<const NodeBounds> children) {
   double farthest = static_cast<double>(parent.radius) * kCentroidUnit;
   for (const NodeBounds& child : children) {
     if (child.empty) continue;
-    farthest = std::max(farthest, length(fromCentroidUnits(child.centroid) - centre) + static_cast<double>(child.radius) * kCentroidUnit);
+    farthest = std::max(farthest, length(fromCentroidUnits(child.centroid) - centre) +
+                                      static_cast<double>(child.radius) * kCentroidUnit);
     if (!child.has_cone) continue;
     if (!parent.has_cone) {
       parent.has_cone = true;
@@ -155,7 +170,8 @@ void includeChildren(NodeBounds& parent, std::span<const NodeBounds> children) {
   const Vector3 axis = unpackNormal(parent.mean_normal);
   for (const NodeBounds& child : children) {
     if (child.empty || !child.has_cone) continue;
-    const double angle = angleBetween(axis, unpackNormal(child.mean_normal)) + coneAngle(child.cone_half_angle);
+    const double angle =
+        angleBetween(axis, unpackNormal(child.mean_normal)) + coneAngle(child.cone_half_angle);
     parent.cone_half_angle = std::max(parent.cone_half_angle, coneUnits(angle));
   }
 }

@@ -1,11 +1,10 @@
 #include "libdb/build/publication.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <span>
+#include <unistd.h>
 
 namespace deltaz {
 
@@ -13,17 +12,21 @@ namespace {
 
 constexpr std::string_view kNewAreaName = ".area.json.new";
 
-std::string temporaryPrefix(const std::string& target) { return fmt::format(".{}.tmp-", baseName(target)); }
+std::string temporaryPrefix(const std::string& target) {
+  return fmt::format(".{}.tmp-", baseName(target));
+}
 
 Error targetExists(const std::string& target) {
   return usageError(target, "the target exists", {}, "Choose another name or give --overwrite");
 }
 
 Error notOurs(const std::string& target, const std::string& why) {
-  return usageError(target, "the target exists and is not a deltaz database, so it is not overwritten", why, "Choose another name");
+  return usageError(target, "the target exists and is not a deltaz database, so it is not overwritten", why,
+                    "Choose another name");
 }
 
-// The area header of the database at `target`; an error if it is not one. A damaged header gives an empty one.
+// The area header of the database at `target`; an error if it is not one. A damaged header gives an empty
+// one.
 Result<AreaHeader> existingArea(const FileSystem& files, const std::string& target) {
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(target));
   if (type != PathType::kDirectory) return notOurs(target, "it is not a folder");
@@ -36,7 +39,8 @@ Result<AreaHeader> existingArea(const FileSystem& files, const std::string& targ
   Result<AreaHeader> area = parseArea(text, path);
   if (area.ok()) return area;
   // A database that is damaged may be replaced; a folder that only looks like one, or a newer one, may not.
-  if (area.error().kind == ErrorKind::kInvalid && area.error().code != IssueCode::kManSyntax) return AreaHeader{};
+  if (area.error().kind == ErrorKind::kInvalid && area.error().code != IssueCode::kManSyntax)
+    return AreaHeader{};
   return notOurs(target, area.error().what);
 }
 

@@ -1,8 +1,9 @@
 // Puts a database in place: the target is absent or complete, whatever happens on the way.
 //
-// A new database is made in `.NAME.dz.tmp-...` beside the target and moved there in one step that never replaces. An
-// overwrite writes files under new, generation-named names into the folder and then swaps area.json. Left-over
-// temporary folders of processes that died are swept. One writer at a time: the lock is a file in the folder.
+// A new database is made in `.NAME.dz.tmp-...` beside the target and moved there in one step that never
+// replaces. An overwrite writes files under new, generation-named names into the folder and then swaps
+// area.json. Left-over temporary folders of processes that died are swept. One writer at a time: the lock is
+// a file in the folder.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@
 
 namespace deltaz {
 
-// What would be refused at once: the target exists (kUsage), or with `overwrite` is not a deltaz database (kUsage); its
-// folder is missing (kCannotAccess).
+// What would be refused at once: the target exists (kUsage), or with `overwrite` is not a deltaz database
+// (kUsage); its folder is missing (kCannotAccess).
 Status checkTarget(const FileSystem& files, const std::string& target, bool overwrite);
 
 class Publication {
@@ -32,8 +33,9 @@ class Publication {
   std::string newFilePath(const std::string& name);
   // Number of this state of the database; part of the names of its files.
   std::uint64_t generation() const { return generation_; }
-  // Writes area.json and makes it all durable and visible. Sets area.generation. Once. If the very last step, syncing
-  // the folder the target stands in, fails, the error says so although the target is there and complete.
+  // Writes area.json and makes it all durable and visible. Sets area.generation. Once. If the very last step,
+  // syncing the folder the target stands in, fails, the error says so although the target is there and
+  // complete.
   Status publish(AreaHeader& area);
 
  private:
@@ -44,13 +46,13 @@ class Publication {
 
   const FileSystem* files_;
   std::string target_;
-  std::string folder_;                   // where files are written: temporary or the target itself
+  std::string folder_;  // where files are written: temporary or the target itself
   bool replaces_ = false;
   bool done_ = false;
   bool made_folder_ = false;
   std::uint64_t generation_ = 1;
-  std::vector<std::string> new_names_;   // written by us into folder_
-  std::vector<std::string> old_names_;   // of the state we replace
+  std::vector<std::string> new_names_;  // written by us into folder_
+  std::vector<std::string> old_names_;  // of the state we replace
   std::unique_ptr<FileLock> lock_;
 };
 

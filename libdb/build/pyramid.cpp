@@ -7,7 +7,9 @@ namespace {
 // Child numbers 1 to 4 run counter-clockwise from the south-west (report Fig 47).
 constexpr std::array<std::array<std::int32_t, 2>, 4> kChildSteps = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-bool contains(PostRange range, std::int64_t value) { return value >= range.begin && value < range.end; }
+bool contains(PostRange range, std::int64_t value) {
+  return value >= range.begin && value < range.end;
+}
 
 }  // namespace
 
@@ -47,7 +49,8 @@ PyramidPlan planPyramid(const GridGeometry& geometry) {
         if (!contains(columns, child.x) || !contains(rows, child.y)) continue;
         child.child_number = static_cast<std::uint8_t>(number + 1);
         child.parent = parent;
-        if (plan.nodes[parent].child_count++ == 0) plan.nodes[parent].first_child = static_cast<std::uint32_t>(plan.nodes.size());
+        if (plan.nodes[parent].child_count++ == 0)
+          plan.nodes[parent].first_child = static_cast<std::uint32_t>(plan.nodes.size());
         plan.nodes.push_back(child);
       }
     }
@@ -56,7 +59,8 @@ PyramidPlan planPyramid(const GridGeometry& geometry) {
   return plan;
 }
 
-TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level, std::int32_t x, std::int32_t y) {
+TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level, std::int32_t x,
+                    std::int32_t y) {
   const PostRange columns = geometry.nodePosts(geometry.columnsAt(level), x);
   const PostRange rows = geometry.nodePosts(geometry.rowsAt(level), y);
   TerrainTile tile;
@@ -69,7 +73,8 @@ TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level
   // A node that holds no post of its level keeps its corner as the first.
   tile.first_column = tile.columns > 0 ? columns.begin : x * leaf;
   tile.first_row = tile.rows > 0 ? rows.begin : y * leaf;
-  const std::size_t size = static_cast<std::size_t>(tile.columns + 2) * static_cast<std::size_t>(tile.rows + 2);
+  const std::size_t size =
+      static_cast<std::size_t>(tile.columns + 2) * static_cast<std::size_t>(tile.rows + 2);
   tile.heights.assign(size, 0);
   tile.valid.assign(size, 0);
   const std::int64_t step = std::int64_t{1} << level;

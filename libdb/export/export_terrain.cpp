@@ -1,14 +1,13 @@
 #include "libdb/export/export_terrain.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cpl_string.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "formats/file_system.h"
 #include "libdb/source/gdal_session.h"
@@ -35,11 +34,16 @@ GridAxis axisAt(const GridAxis& axis, PostRange posts, int level) {
 std::array<double, 6> geotransformOf(const GridHeader& header) {
   const double west = postDegrees(header.longitude, -180, header.longitude.first);
   const double north = postDegrees(header.latitude, -90, header.latitude.first + header.latitude.count - 1);
-  return {west - 0.5 * header.longitude.spacing_degrees, header.longitude.spacing_degrees, 0,
-          north + 0.5 * header.latitude.spacing_degrees, 0, -header.latitude.spacing_degrees};
+  return {west - 0.5 * header.longitude.spacing_degrees,
+          header.longitude.spacing_degrees,
+          0,
+          north + 0.5 * header.latitude.spacing_degrees,
+          0,
+          -header.latitude.spacing_degrees};
 }
 
-Status writeRaster(const RawGrid& grid, int level, const std::string& path, const std::string& target, const GdalSession& session) {
+Status writeRaster(const RawGrid& grid, int level, const std::string& path, const std::string& target,
+                   const GdalSession& session) {
   const GridHeader& header = grid.header;
   const SourceDescription source = header.sources.empty() ? SourceDescription{} : header.sources.front();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
@@ -54,14 +58,17 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
   GDALDatasetUniquePtr dataset(driver->Create(path.c_str(), columns, rows, 1, type, creation.List()));
   if (!dataset) return accessError(target, "cannot create the file", session.lastFailure());
 
-  std::array<double, 6> transform = level == 0 && !header.sources.empty() ? source.geotransform : geotransformOf(header);
+  std::array<double, 6> transform =
+      level == 0 && !header.sources.empty() ? source.geotransform : geotransformOf(header);
   const bool south_up = transform[5] > 0;
   OGRSpatialReference reference;
   reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   bool failed = reference.importFromWkt(header.crs_wkt.c_str()) != OGRERR_NONE;
   failed = failed || dataset->SetSpatialRef(&reference) != CE_None;
   failed = failed || dataset->SetGeoTransform(transform.data()) != CE_None;
-  failed = failed || dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, source.point_registered ? GDALMD_AOP_POINT : GDALMD_AOP_AREA) != CE_None;
+  failed = failed ||
+           dataset->SetMetadataItem(GDALMD_AREA_OR_POINT,
+                                    source.point_registered ? GDALMD_AOP_POINT : GDALMD_AOP_AREA) != CE_None;
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   const double nodata = source.nodata.value_or(kDefaultNodata);
   if (source.nodata || !grid.valid.empty()) failed = failed || band.SetNoDataValue(nodata) != CE_None;
@@ -74,11 +81,13 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
           grid.isValid(column, row) ? grid.height(column, row) : static_cast<std::int32_t>(nodata);
     }
     const int target_row = south_up ? row : rows - 1 - row;
-    failed = band.RasterIO(GF_Write, 0, target_row, columns, 1, line.data(), columns, 1, GDT_Int32, 0, 0, nullptr) != CE_None;
+    failed = band.RasterIO(GF_Write, 0, target_row, columns, 1, line.data(), columns, 1, GDT_Int32, 0, 0,
+                           nullptr) != CE_None;
   }
   // A full disk may show only when the last blocks are written.
   dataset.reset();
-  if (failed || session.hasFailed()) return accessError(target, "cannot write the file", session.lastFailure());
+  if (failed || session.hasFailed())
+    return accessError(target, "cannot write the file", session.lastFailure());
   return Success{};
 }
 
@@ -86,16 +95,19 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
 
 Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
   if (grid_number < 0 || grid_number >= database.gridCount()) {
-    return usageError("--grid", fmt::format("there is no grid {}", grid_number), fmt::format("the database has {}, counted from 0", database.gridCount()));
+    return usageError("--grid", fmt::format("there is no grid {}", grid_number),
+                      fmt::format("the database has {}, counted from 0", database.gridCount()));
   }
   const GridGeometry& geometry = database.grid(grid_number);
   if (level < 0 || level >= geometry.header().level_count) {
-    return usageError("--level", fmt::format("there is no level {}", level),
-                      fmt::format("the grid has {}, counted from 0, the finest", geometry.header().level_count));
+    return usageError(
+        "--level", fmt::format("there is no level {}", level),
+        fmt::format("the grid has {}, counted from 0, the finest", geometry.header().level_count));
   }
   const PostRange columns = geometry.columnsAt(level);
   const PostRange rows = geometry.rowsAt(level);
-  if (columns.size() < 1 || rows.size() < 1) return usageError("--level", fmt::format("level {} holds no post", level));
+  if (columns.size() < 1 || rows.size() < 1)
+    return usageError("--level", fmt::format("level {} holds no post", level));
   RawGrid grid;
   grid.header = geometry.header();
   if (level > 0) {
@@ -104,9 +116,11 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
   }
   DELTAZ_TRY_ASSIGN(const std::vector<Node> nodes, nodesOfLevel(database, grid_number, level));
   // A damaged header must not make us ask for more memory than the nodes could fill.
-  const std::int64_t posts_per_node = std::int64_t{geometry.header().leaf_cells + 1} * (geometry.header().leaf_cells + 1);
+  const std::int64_t posts_per_node =
+      std::int64_t{geometry.header().leaf_cells + 1} * (geometry.header().leaf_cells + 1);
   if (columns.size() > static_cast<std::int64_t>(nodes.size()) * posts_per_node / rows.size()) {
-    return invalidError(IssueCode::kRefUnreachable, database.path(), fmt::format("level {} does not cover the area", level));
+    return invalidError(IssueCode::kRefUnreachable, database.path(),
+                        fmt::format("level {} does not cover the area", level));
   }
   grid.heights.assign(static_cast<std::size_t>(columns.size() * rows.size()), 0);
   std::vector<std::uint8_t> valid(grid.heights.size(), 0);
@@ -116,7 +130,8 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
     for (int j = 0; j < tile.rows; ++j) {
       const std::int64_t row = tile.first_row + j - rows.begin;
       for (int i = 0; i < tile.columns; ++i) {
-        const auto at = static_cast<std::size_t>(row * columns.size() + tile.first_column + i - columns.begin);
+        const auto at =
+            static_cast<std::size_t>(row * columns.size() + tile.first_column + i - columns.begin);
         grid.heights[at] = tile.height(i, j);
         valid[at] = tile.isValid(i, j) ? 1 : 0;
         ++posts;
@@ -125,7 +140,8 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
   }
   // Posts on shared borders come more than once, so fewer posts than the area has means a missing node.
   if (posts < grid.heights.size()) {
-    return invalidError(IssueCode::kRefUnreachable, database.path(), fmt::format("level {} does not cover the area", level));
+    return invalidError(IssueCode::kRefUnreachable, database.path(),
+                        fmt::format("level {} does not cover the area", level));
   }
   if (std::find(valid.begin(), valid.end(), std::uint8_t{0}) != valid.end()) grid.valid = std::move(valid);
   return grid;
@@ -139,10 +155,12 @@ Status exportTerrain(const Database& database, const std::string& target, const 
     return usageError(target, "the target exists", {}, "Choose another name or give --overwrite");
   }
   DELTAZ_TRY_ASSIGN(const PathType parent, files.typeOf(parentPath(target)));
-  if (parent != PathType::kDirectory) return accessError(parentPath(target), "cannot write here", "there is no such folder", "Make it first");
+  if (parent != PathType::kDirectory)
+    return accessError(parentPath(target), "cannot write here", "there is no such folder", "Make it first");
   DELTAZ_TRY_ASSIGN(const RawGrid grid, readGrid(database, options.grid, options.level));
 
-  const std::string temporary = joinPath(parentPath(target), fmt::format(".{}.tmp-{}", baseName(target), ::getpid()));
+  const std::string temporary =
+      joinPath(parentPath(target), fmt::format(".{}.tmp-{}", baseName(target), ::getpid()));
   try {
     Status written = Success{};
     {
@@ -150,7 +168,8 @@ Status exportTerrain(const Database& database, const std::string& target, const 
       written = writeRaster(grid, options.level, temporary, target, session);
     }
     if (written.ok()) {
-      written = options.overwrite ? files.rename(temporary, target) : files.renameNoReplace(temporary, target);
+      written =
+          options.overwrite ? files.rename(temporary, target) : files.renameNoReplace(temporary, target);
     }
     if (!written.ok()) (void)files.removeFile(temporary);
     return written;

@@ -1,8 +1,9 @@
-// Writes a grid of a database back as GeoTIFF: level 0 post for post and void for void as the source had them, with its
-// georeferencing, sentinel, data type and unit. Coarser levels get a georeferencing of their own.
+// Writes a grid of a database back as GeoTIFF: level 0 post for post and void for void as the source had
+// them, with its georeferencing, sentinel, data type and unit. Coarser levels get a georeferencing of their
+// own.
 //
-// The file appears under its name complete or not at all. Errors: kUsage (target exists, no such level or grid),
-// kCannotAccess, and whatever reading the database reports.
+// The file appears under its name complete or not at all. Errors: kUsage (target exists, no such level or
+// grid), kCannotAccess, and whatever reading the database reports.
 #pragma once
 
 #include <string>

@@ -1,15 +1,14 @@
 #include "libdb/source/elevation_source.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
+#include <ogr_spatialref.h>
 
 #include "formats/file_system.h"
 #include "formats/terrain_segment.h"
@@ -49,13 +48,16 @@ std::string rasterInsideZip(const std::string& path) {
 
 Result<GDALDatasetUniquePtr> openRaster(const std::string& path, const GdalSession& session) {
   VSIStatBufL status;
-  if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) {
+  if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) !=
+      0) {
     return accessError(path, "cannot open the source", "there is no such file");
   }
-  if (VSI_ISDIR(status.st_mode)) return refused(path, "a folder is not an elevation source", {}, "Name the file in it");
+  if (VSI_ISDIR(status.st_mode))
+    return refused(path, "a folder is not an elevation source", {}, "Name the file in it");
   if (status.st_size == 0) return refused(path, "the source is empty", "the file has no bytes");
   VSILFILE* readable = VSIFOpenL(path.c_str(), "rb");
-  if (readable == nullptr) return accessError(path, "cannot open the source", "it cannot be read", "Check its permissions");
+  if (readable == nullptr)
+    return accessError(path, "cannot open the source", "it cannot be read", "Check its permissions");
   VSIFCloseL(readable);
   constexpr unsigned kOpenFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), kOpenFlags));
@@ -64,7 +66,8 @@ Result<GDALDatasetUniquePtr> openRaster(const std::string& path, const GdalSessi
       dataset.reset(GDALDataset::Open(inside.c_str(), kOpenFlags));
     }
   }
-  if (!dataset) return refused(path, "this is not an elevation raster that can be read", session.lastFailure());
+  if (!dataset)
+    return refused(path, "this is not an elevation raster that can be read", session.lastFailure());
   return dataset;
 }
 
@@ -108,27 +111,31 @@ constexpr std::array<UnitName, 16> kUnits = {{{"", kMetre},
 
 Result<Rational> quantumOf(const std::string& path, const std::string& unit) {
   std::string lower = unit;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const UnitName& entry : kUnits) {
     if (entry.name == lower) return entry.metres;
   }
-  return refused(path, fmt::format("the elevation unit '{}' is unknown", unit), "known are metres, feet and US survey feet");
+  return refused(path, fmt::format("the elevation unit '{}' is unknown", unit),
+                 "known are metres, feet and US survey feet");
 }
 
 // ---- reference system
 
-Status describeReferenceSystem(const OGRSpatialReference& stated, const std::string& path, GridHeader& header) {
+Status describeReferenceSystem(const OGRSpatialReference& stated, const std::string& path,
+                               GridHeader& header) {
   OGRSpatialReference horizontal(stated);
   if (stated.IsCompound()) horizontal.StripVertical();
   if (horizontal.IsProjected()) {
-    return refused(path, fmt::format("the source is projected ({})", horizontal.GetName()), "this version reads geodetic sources only",
-                   "Warp it to geographic coordinates first");
+    return refused(path, fmt::format("the source is projected ({})", horizontal.GetName()),
+                   "this version reads geodetic sources only", "Warp it to geographic coordinates first");
   }
   if (!horizontal.IsGeographic()) return refused(path, "the source's reference system is not geographic");
   if (std::abs(horizontal.GetAngularUnits() - std::atan(1.0) / 45.0) > 1e-12) {
     return refused(path, "the source's coordinates are not in degrees");
   }
-  if (std::abs(horizontal.GetPrimeMeridian()) > 0) return refused(path, "the source's prime meridian is not Greenwich");
+  if (std::abs(horizontal.GetPrimeMeridian()) > 0)
+    return refused(path, "the source's prime meridian is not Greenwich");
   OGRErr failed = OGRERR_NONE;
   header.ellipsoid.semi_major_axis = horizontal.GetSemiMajor(&failed);
   if (failed != OGRERR_NONE) return refused(path, "the source's reference system has no ellipsoid");
@@ -149,8 +156,8 @@ Status describeReferenceSystem(const OGRSpatialReference& stated, const std::str
 
 Status checkBand(GDALDataset& dataset, const std::string& path) {
   if (dataset.GetRasterCount() != 1) {
-    return refused(path, fmt::format("the source has {} bands", dataset.GetRasterCount()), "this version reads one band",
-                   "Extract the elevations into a file of their own");
+    return refused(path, fmt::format("the source has {} bands", dataset.GetRasterCount()),
+                   "this version reads one band", "Extract the elevations into a file of their own");
   }
   GDALRasterBand& band = *dataset.GetRasterBand(1);
   const GDALDataType type = band.GetRasterDataType();
@@ -162,16 +169,18 @@ Status checkBand(GDALDataset& dataset, const std::string& path) {
     return refused(path, "the source scales its elevations", "this version reads plain integers");
   }
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0) {
-    return refused(path, "the source marks its voids with a mask of its own", "this version reads a nodata value",
-                   "Convert it with a nodata value first");
+    return refused(path, "the source marks its voids with a mask of its own",
+                   "this version reads a nodata value", "Convert it with a nodata value first");
   }
   return Success{};
 }
 
 Status placeGrid(const SourceDescription& source, const std::string& path, GridHeader& header) {
   const std::array<double, 6>& transform = source.geotransform;
-  if (transform[2] != 0 || transform[4] != 0) return refused(path, "the source is rotated against its coordinate axes");
-  if (!(transform[1] > 0) || transform[5] == 0 || !std::isfinite(transform[0]) || !std::isfinite(transform[3])) {
+  if (transform[2] != 0 || transform[4] != 0)
+    return refused(path, "the source is rotated against its coordinate axes");
+  if (!(transform[1] > 0) || transform[5] == 0 || !std::isfinite(transform[0]) ||
+      !std::isfinite(transform[3])) {
     return refused(path, "the source's columns do not run from west to east");
   }
   if (source.columns < 2 || source.rows < 2) return refused(path, "the source has fewer than 2 x 2 posts");
@@ -182,10 +191,12 @@ Status placeGrid(const SourceDescription& source, const std::string& path, GridH
   const double south = std::min(first_row, last_row);
   const double north = std::max(first_row, last_row);
   if (south < -90 - kDegreesTolerance || north > 90 + kDegreesTolerance) {
-    return refused(path, fmt::format("the source reaches from latitude {} to {}", south, north), "there is no such latitude");
+    return refused(path, fmt::format("the source reaches from latitude {} to {}", south, north),
+                   "there is no such latitude");
   }
   const double width = static_cast<double>(source.columns - 1) * transform[1];
-  if (width > 360 + kDegreesTolerance || std::abs(west) > 720) return refused(path, "the source goes more than once round the Earth");
+  if (width > 360 + kDegreesTolerance || std::abs(west) > 720)
+    return refused(path, "the source goes more than once round the Earth");
   // The west edge in [-180, 180), also when rounding left it a hair below.
   while (west < -180 - kDegreesTolerance) west += 360;
   while (west >= 180 - kDegreesTolerance) west -= 360;
@@ -205,9 +216,10 @@ Status readPosts(GDALDataset& dataset, const std::string& path, const GdalSessio
   std::vector<std::int32_t> buffer(columns * kRowsPerRead);
   for (int first = 0; first < rows; first += kRowsPerRead) {
     const int count = std::min(kRowsPerRead, rows - first);
-    if (band.RasterIO(GF_Read, 0, first, static_cast<int>(columns), count, buffer.data(), static_cast<int>(columns), count, GDT_Int32,
-                      0, 0, nullptr) != CE_None) {
-      return refused(path, "the source cannot be read to its end", session.lastFailure(), "It is damaged or cut short");
+    if (band.RasterIO(GF_Read, 0, first, static_cast<int>(columns), count, buffer.data(),
+                      static_cast<int>(columns), count, GDT_Int32, 0, 0, nullptr) != CE_None) {
+      return refused(path, "the source cannot be read to its end", session.lastFailure(),
+                     "It is damaged or cut short");
     }
     for (int row = 0; row < count; ++row) {
       const int target = south_up ? first + row : rows - 1 - (first + row);
@@ -225,7 +237,8 @@ Status readPosts(GDALDataset& dataset, const std::string& path, const GdalSessio
       grid.heights[k] = 0;
     }
   }
-  if (voids == grid.heights.size()) return refused(path, "the source has no elevations", "every post is void");
+  if (voids == grid.heights.size())
+    return refused(path, "the source has no elevations", "every post is void");
   for (std::size_t k = 0; k < grid.heights.size(); ++k) {
     if (std::abs(static_cast<std::int64_t>(grid.heights[k])) > kMaximumHeightQuanta) {
       return refused(path, fmt::format("the elevation {} is out of range", grid.heights[k]));
@@ -234,7 +247,8 @@ Status readPosts(GDALDataset& dataset, const std::string& path, const GdalSessio
   return Success{};
 }
 
-Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const SourceOptions& options, const GdalSession& session) {
+Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const SourceOptions& options,
+                           const GdalSession& session) {
   RawGrid grid;
   DELTAZ_TRY(checkBand(dataset, path));
   SourceDescription source;
@@ -259,13 +273,16 @@ Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const 
   if (const OGRSpatialReference* stated = dataset.GetSpatialRef(); stated != nullptr) {
     reference = *stated;
   } else if (options.crs.empty()) {
-    return usageError(path, "the source does not say what its coordinates refer to", "it has no coordinate reference system",
+    return usageError(path, "the source does not say what its coordinates refer to",
+                      "it has no coordinate reference system",
                       "Give one with --crs, for example --crs EPSG:4326");
   } else if (reference.SetFromUserInput(options.crs.c_str()) != OGRERR_NONE) {
-    return usageError("--crs", fmt::format("'{}' is not a coordinate reference system", options.crs), session.lastFailure());
+    return usageError("--crs", fmt::format("'{}' is not a coordinate reference system", options.crs),
+                      session.lastFailure());
   }
   DELTAZ_TRY(describeReferenceSystem(reference, path, grid.header));
-  if (const char* dted = dataset.GetMetadataItem("DTED_VerticalDatum"); dted != nullptr && grid.header.vertical_datum == "unknown") {
+  if (const char* dted = dataset.GetMetadataItem("DTED_VerticalDatum");
+      dted != nullptr && grid.header.vertical_datum == "unknown") {
     grid.header.vertical_datum = dted;
   }
   grid.header.unit = "metre";

@@ -1,9 +1,10 @@
-// Reads a source DEM through GDAL and places its posts on a grid, without resampling: posts are where the source says
-// they are (the centre of a GDAL pixel, whether the file calls itself pixel-is-area or pixel-is-point).
+// Reads a source DEM through GDAL and places its posts on a grid, without resampling: posts are where the
+// source says they are (the centre of a GDAL pixel, whether the file calls itself pixel-is-area or
+// pixel-is-point).
 //
-// This version reads one integer raster in geodetic coordinates, north-up or south-up. What it does not read it
-// refuses, saying why: rotated, projected, floating point, per-dataset masks, several bands.
-// Errors: kCannotAccess (missing, unreadable), kInvalid (not a raster, truncated, all void, ...), kUsage (no CRS).
+// This version reads one integer raster in geodetic coordinates, north-up or south-up. What it does not read
+// it refuses, saying why: rotated, projected, floating point, per-dataset masks, several bands. Errors:
+// kCannotAccess (missing, unreadable), kInvalid (not a raster, truncated, all void, ...), kUsage (no CRS).
 // GDAL's exceptions and messages end here. Thread-safety: one thread per call.
 #pragma once
 
@@ -24,9 +25,10 @@ struct SourceOptions {
 
 // A whole grid of posts in memory: the report's raw gaming area.
 struct RawGrid {
-  GridHeader header;                 // level_count is not yet set
-  std::vector<std::int32_t> heights; // latitude.count rows of longitude.count posts, from the south-west, quanta
-  std::vector<std::uint8_t> valid;   // 1 or 0, same shape; empty if every post is valid
+  GridHeader header;  // level_count is not yet set
+  std::vector<std::int32_t>
+      heights;  // latitude.count rows of longitude.count posts, from the south-west, quanta
+  std::vector<std::uint8_t> valid;  // 1 or 0, same shape; empty if every post is valid
   bool isValid(std::int64_t column, std::int64_t row) const {
     return valid.empty() || valid[static_cast<std::size_t>(row * header.longitude.count + column)] != 0;
   }

@@ -2,7 +2,6 @@
 
 #include <cpl_error.h>
 #include <gdal.h>
-
 #include <mutex>
 
 namespace deltaz {
@@ -21,8 +20,12 @@ GdalSession::GdalSession() {
   CPLPushErrorHandlerEx(collect, &failure_);
 }
 
-GdalSession::~GdalSession() { CPLPopErrorHandler(); }
+GdalSession::~GdalSession() {
+  CPLPopErrorHandler();
+}
 
-std::string GdalSession::lastFailure() const { return failure_.empty() ? "no reason given" : failure_; }
+std::string GdalSession::lastFailure() const {
+  return failure_.empty() ? "no reason given" : failure_;
+}
 
 }  // namespace deltaz

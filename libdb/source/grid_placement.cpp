@@ -10,17 +10,18 @@ namespace deltaz {
 
 namespace {
 
-// Sources name their spacing in seconds, or in a simple fraction of one (1/3", 1/9", 3/10"); larger denominators would
-// fit anything.
+// Sources name their spacing in seconds, or in a simple fraction of one (1/3", 1/9", 3/10"); larger
+// denominators would fit anything.
 constexpr std::int64_t kLargestDenominator = 1000;
 
-// The simplest fraction within `tolerance` of `value` > 0 (continued fraction); nothing if its denominator would be too
-// large.
+// The simplest fraction within `tolerance` of `value` > 0 (continued fraction); nothing if its denominator
+// would be too large.
 std::optional<Rational> simplestFraction(double value, double tolerance) {
   std::int64_t previous_numerator = 1, numerator = static_cast<std::int64_t>(std::floor(value));
   std::int64_t previous_denominator = 0, denominator = 1;
   double rest = value - std::floor(value);
-  while (std::abs(value - static_cast<double>(numerator) / static_cast<double>(denominator)) > tolerance || numerator == 0) {
+  while (std::abs(value - static_cast<double>(numerator) / static_cast<double>(denominator)) > tolerance ||
+         numerator == 0) {
     if (rest < 1e-12) return std::nullopt;
     const double inverse = 1.0 / rest;
     const double whole = std::floor(inverse);
@@ -52,7 +53,8 @@ GridAxis placeAxis(double first_degrees, double spacing_degrees, std::int64_t co
   axis.count = count;
   // Whole multiples of an exact spacing, if the source lies on them.
   const double tolerance_arcseconds = kPlacementTolerance * 3600.0 / static_cast<double>(count);
-  if (const std::optional<Rational> exact = simplestFraction(spacing_degrees * 3600.0, tolerance_arcseconds)) {
+  if (const std::optional<Rational> exact =
+          simplestFraction(spacing_degrees * 3600.0, tolerance_arcseconds)) {
     axis.exact_spacing = *exact;
     axis.spacing_degrees = exact->value() / 3600.0;
     axis.phase = 0;

@@ -38,7 +38,8 @@ AreaHeader sampleArea() {
   source.columns = source.rows = 1201;
   grid.sources.push_back(source);
   area.grids.push_back(grid);
-  area.files = {{FileRole::kNodes, 0, "nodes-000001.dzn", 53808, {}}, {FileRole::kTerrain, 0, "terrain-000001-000.dzt", 1, {}}};
+  area.files = {{FileRole::kNodes, 0, "nodes-000001.dzn", 53808, {}},
+                {FileRole::kTerrain, 0, "terrain-000001-000.dzt", 1, {}}};
   area.tool_version = "deltaz 0.1.0";
   area.options = {{"leaf", "64"}};
   return area;
@@ -78,31 +79,44 @@ std::string withReplaced(const std::string& from, const std::string& to) {
 }
 
 TEST(Area, a_newer_version_or_required_feature_is_refused_as_newer) {
-  EXPECT_EQ(parseArea(withReplaced("\"version\": 1", "\"version\": 2"), "a").error().kind, ErrorKind::kNewerFormat);
-  const Result<AreaHeader> feature = parseArea(withReplaced("\"required_features\": []", "\"required_features\": [\n    \"tin\"\n  ]"), "a");
+  EXPECT_EQ(parseArea(withReplaced("\"version\": 1", "\"version\": 2"), "a").error().kind,
+            ErrorKind::kNewerFormat);
+  const Result<AreaHeader> feature =
+      parseArea(withReplaced("\"required_features\": []", "\"required_features\": [\n    \"tin\"\n  ]"), "a");
   ASSERT_FALSE(feature.ok());
   EXPECT_EQ(feature.error().kind, ErrorKind::kNewerFormat);
   EXPECT_NE(feature.error().message().find("tin"), std::string::npos);
 }
 
 TEST(Area, an_optional_feature_may_bring_members_this_version_does_not_know) {
-  EXPECT_TRUE(parseArea(withReplaced("\"optional_features\": []", "\"optional_features\": [\n    \"notes\"\n  ],\n  \"notes\": 1"), "a").ok());
-  EXPECT_EQ(parseArea(withReplaced("\"generation\": 1", "\"generation\": 1,\n  \"notes\": 1"), "a").error().code, IssueCode::kManField);
+  EXPECT_TRUE(parseArea(withReplaced("\"optional_features\": []",
+                                     "\"optional_features\": [\n    \"notes\"\n  ],\n  \"notes\": 1"),
+                        "a")
+                  .ok());
+  EXPECT_EQ(
+      parseArea(withReplaced("\"generation\": 1", "\"generation\": 1,\n  \"notes\": 1"), "a").error().code,
+      IssueCode::kManField);
 }
 
 TEST(Area, values_out_of_range_are_named) {
   const auto fault = [](const std::string& from, const std::string& to) {
     const Result<AreaHeader> area = parseArea(withReplaced(from, to), "a");
-    return area.ok() ? std::string("accepted") : std::string(issueCodeName(area.error().code)) + " " + area.error().what;
+    return area.ok() ? std::string("accepted")
+                     : std::string(issueCodeName(area.error().code)) + " " + area.error().what;
   };
-  EXPECT_EQ(fault("\"leaf_cells\": 64", "\"leaf_cells\": 63"), "MAN_FIELD member grids[0].leaf_cells is not a power of two");
+  EXPECT_EQ(fault("\"leaf_cells\": 64", "\"leaf_cells\": 63"),
+            "MAN_FIELD member grids[0].leaf_cells is not a power of two");
   EXPECT_EQ(fault("\"count\": 554", "\"count\": -1"), "MAN_FIELD member nodes.count is out of range");
-  EXPECT_EQ(fault("\"count\": 554", "\"count\": 18446744073709551615"), "MAN_FIELD member nodes.count is out of range");
+  EXPECT_EQ(fault("\"count\": 554", "\"count\": 18446744073709551615"),
+            "MAN_FIELD member nodes.count is out of range");
   EXPECT_EQ(fault("\"count\": 554", "\"count\": \"many\""), "MAN_FIELD member nodes.count is not an integer");
   EXPECT_EQ(fault("\"north\": 47.0", "\"north\": 45.0"), "MAN_FIELD member bounds. are empty");
-  EXPECT_EQ(fault("nodes-000001.dzn", "../nodes.dzn"), "MAN_FIELD member files[0].name is not a plain file name");
-  EXPECT_EQ(fault("\"phase\": 0.25", "\"phase\": 1.0"), "MAN_FIELD member grids[0].latitude.phase is out of range");
-  EXPECT_EQ(fault("\"diagonal\": \"SW-NE\"", "\"diagonal\": \"NW-SE\""), "MAN_FIELD member grids[0].diagonal is not SW-NE");
+  EXPECT_EQ(fault("nodes-000001.dzn", "../nodes.dzn"),
+            "MAN_FIELD member files[0].name is not a plain file name");
+  EXPECT_EQ(fault("\"phase\": 0.25", "\"phase\": 1.0"),
+            "MAN_FIELD member grids[0].latitude.phase is out of range");
+  EXPECT_EQ(fault("\"diagonal\": \"SW-NE\"", "\"diagonal\": \"NW-SE\""),
+            "MAN_FIELD member grids[0].diagonal is not SW-NE");
 }
 
 TEST(Area, a_name_that_is_not_utf8_stays_readable) {

@@ -1,7 +1,6 @@
 #include "formats/error.h"
 
 #include <gtest/gtest.h>
-
 #include <set>
 
 namespace deltaz {
@@ -23,9 +22,9 @@ TEST(Error, kinds_have_the_documented_exit_codes) {
 
 TEST(IssueCode, names_are_unique_and_lead_back_to_their_code) {
   std::set<std::string_view> names;
-#define DELTAZ_CHECK(name, text)                                       \
-  EXPECT_EQ(issueCodeName(IssueCode::name), text);                     \
-  EXPECT_EQ(issueCodeFromName(text), IssueCode::name);                 \
+#define DELTAZ_CHECK(name, text)                       \
+  EXPECT_EQ(issueCodeName(IssueCode::name), text);     \
+  EXPECT_EQ(issueCodeFromName(text), IssueCode::name); \
   EXPECT_TRUE(names.insert(text).second) << text << " is used twice";
   DELTAZ_ISSUE_CODES(DELTAZ_CHECK)
 #undef DELTAZ_CHECK

@@ -9,7 +9,9 @@
 namespace deltaz {
 namespace {
 
-std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+std::span<const std::byte> bytesOf(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 void writeFile(const FileSystem& files, const std::string& path, std::string_view text) {
   Result<std::unique_ptr<WritableFile>> file = files.create(path);

@@ -1,14 +1,15 @@
 #include "formats/hash.h"
 
 #include <gtest/gtest.h>
-
 #include <string_view>
 #include <vector>
 
 namespace deltaz {
 namespace {
 
-std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+std::span<const std::byte> bytesOf(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 // Published values of XXH3 (seed 0) for the empty input.
 TEST(Hash, is_xxh3_in_canonical_byte_order) {

@@ -1,9 +1,8 @@
 #include "formats/node_file.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-
-#include <algorithm>
 
 namespace deltaz {
 namespace {

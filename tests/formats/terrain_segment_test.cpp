@@ -15,15 +15,18 @@ TerrainBlock sampleBlock(std::uint16_t columns, std::uint16_t rows) {
   block.spacing_y = 1.0 / 3600;
   block.quantum = {381, 1250};
   const std::size_t posts = static_cast<std::size_t>(columns + 2) * static_cast<std::size_t>(rows + 2);
-  for (std::size_t k = 0; k < posts; ++k) block.heights.push_back(static_cast<std::int32_t>(k * k % 977) + 4000);
+  for (std::size_t k = 0; k < posts; ++k)
+    block.heights.push_back(static_cast<std::int32_t>(k * k % 977) + 4000);
   block.valid.assign(posts, 1);
   block.ancestors = {{10, 400, 5}, {kMaximumLeafCells, 123456789012345ull, 7}};
   return block;
 }
 
 RC_GTEST_PROP(TerrainSegment, blocks_read_back_exactly, ()) {
-  TerrainBlock block = sampleBlock(*rc::gen::inRange<std::uint16_t>(0, 12), *rc::gen::inRange<std::uint16_t>(0, 12));
-  block.valid = *rc::gen::container<std::vector<std::uint8_t>>(block.heights.size(), rc::gen::element<std::uint8_t>(0, 1));
+  TerrainBlock block =
+      sampleBlock(*rc::gen::inRange<std::uint16_t>(0, 12), *rc::gen::inRange<std::uint16_t>(0, 12));
+  block.valid = *rc::gen::container<std::vector<std::uint8_t>>(block.heights.size(),
+                                                               rc::gen::element<std::uint8_t>(0, 1));
   const Result<TerrainBlock> back = decodeTerrainBlock(encodeTerrainBlock(block), 64, "test");
   RC_ASSERT(back.ok());
   RC_ASSERT(back.value().columns == block.columns);

@@ -27,7 +27,8 @@ TEST(Database, hands_out_exactly_what_was_built) {
         for (int i = -1; i <= tile.value().columns; ++i) {
           const std::int64_t column = (tile.value().first_column + i) * step - header.longitude.first;
           const std::int64_t row = (tile.value().first_row + j) * step - header.latitude.first;
-          const bool inside = column >= 0 && column < header.longitude.count && row >= 0 && row < header.latitude.count;
+          const bool inside =
+              column >= 0 && column < header.longitude.count && row >= 0 && row < header.latitude.count;
           ASSERT_EQ(tile.value().isValid(i, j), inside && grid.isValid(column, row));
           if (tile.value().isValid(i, j)) {
             ASSERT_EQ(tile.value().height(i, j), grid.height(column, row));

@@ -1,9 +1,8 @@
 #include "libdb/access/earth.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-
-#include <algorithm>
 
 namespace deltaz {
 namespace {
@@ -11,11 +10,13 @@ namespace {
 constexpr double kSeparableError = 4e-9;  // metres, stated in earth.h
 
 RC_GTEST_PROP(Earth, separable_form_agrees_with_geographiclib, ()) {
-  const double latitude = *rc::gen::element(90.0, -90.0, 0.0, 1e-9, *rc::gen::inRange(-90000, 90001) / 1000.0);
-  const double longitude = *rc::gen::element(180.0, -180.0, 0.0, 540.0, *rc::gen::inRange(-180000, 540001) / 1000.0);
+  const double latitude =
+      *rc::gen::element(90.0, -90.0, 0.0, 1e-9, *rc::gen::inRange(-90000, 90001) / 1000.0);
+  const double longitude =
+      *rc::gen::element(180.0, -180.0, 0.0, 540.0, *rc::gen::inRange(-180000, 540001) / 1000.0);
   const double height = *rc::gen::inRange(-11000, 9000);
-  const EllipsoidShape ellipsoid = *rc::gen::element(EllipsoidShape{}, EllipsoidShape{6378206.4, 294.9786982},
-                                                     EllipsoidShape{6371000, 0});
+  const EllipsoidShape ellipsoid =
+      *rc::gen::element(EllipsoidShape{}, EllipsoidShape{6378206.4, 294.9786982}, EllipsoidShape{6371000, 0});
   const Vector3 fast = earthCentred(rowConstants(ellipsoid, latitude), columnConstants(longitude), height);
   const Vector3 exact = toEarthCentred(ellipsoid, {latitude, longitude, height});
   RC_ASSERT(length(fast - exact) <= kSeparableError);
@@ -44,13 +45,15 @@ RC_GTEST_PROP(Earth, steps_lead_from_one_row_and_column_to_another, ()) {
   RC_ASSERT(std::abs(a.c + row.c - b.c) <= kSeparableError);
   RC_ASSERT(std::abs(a.s + row.s - b.s) <= 1e-15);
   const ColumnStep column = columnStep(2 * from, 2 * to);
-  RC_ASSERT(std::abs(columnConstants(2 * from).cosine + column.cosine - columnConstants(2 * to).cosine) <= 1e-15);
+  RC_ASSERT(std::abs(columnConstants(2 * from).cosine + column.cosine - columnConstants(2 * to).cosine) <=
+            1e-15);
   RC_ASSERT(std::abs(columnConstants(2 * from).sine + column.sine - columnConstants(2 * to).sine) <= 1e-15);
 }
 
 RC_GTEST_PROP(Earth, geodetic_and_earth_centred_are_inverse, ()) {
   const EllipsoidShape ellipsoid;
-  const GeodeticPoint point{*rc::gen::inRange(-89999, 90000) / 1000.0, *rc::gen::inRange(-179999, 180000) / 1000.0,
+  const GeodeticPoint point{*rc::gen::inRange(-89999, 90000) / 1000.0,
+                            *rc::gen::inRange(-179999, 180000) / 1000.0,
                             static_cast<double>(*rc::gen::inRange(-10000, 1000000))};
   const GeodeticPoint back = toGeodetic(ellipsoid, toEarthCentred(ellipsoid, point));
   RC_ASSERT(std::abs(back.latitude - point.latitude) < 1e-12);

@@ -1,4 +1,5 @@
-// A database of every released format version is kept for ever in tests/golden, and this version reads all of them.
+// A database of every released format version is kept for ever in tests/golden, and this version reads all of
+// them.
 #include <gtest/gtest.h>
 
 #include "libdb/access/content_digest.h"
@@ -47,8 +48,8 @@ TEST(Golden, version_1_is_valid) {
   EXPECT_EQ(report.count(Severity::kError), 0u);
 }
 
-// Errors, bounds, normals' definition and topology enter the digest: a change in any of them is a change of what
-// databases say, and must be meant.
+// Errors, bounds, normals' definition and topology enter the digest: a change in any of them is a change of
+// what databases say, and must be meant.
 TEST(Golden, version_1_and_a_fresh_build_say_the_same) {
   Result<Database> golden = Database::open(localFileSystem(), kVersion1);
   ASSERT_TRUE(golden.ok());

@@ -25,8 +25,8 @@ RC_GTEST_PROP(GridGeometry, divisions_round_down_and_up, ()) {
   RC_ASSERT((ceilDivide(a, b) - 1) * b < a);
 }
 
-// Whatever the area: a level's posts are those of the finer level with an even index, each of them lies in some node,
-// and neighbours share their border posts.
+// Whatever the area: a level's posts are those of the finer level with an even index, each of them lies in
+// some node, and neighbours share their border posts.
 RC_GTEST_PROP(GridGeometry, levels_nest_and_nodes_cover, ()) {
   GridHeader header = syntheticGrid().header;
   header.leaf_cells = 8;

@@ -1,9 +1,8 @@
 #include "libdb/access/vertex_normals.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
+#include <gtest/gtest.h>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -20,7 +19,8 @@ double degreesBetween(const Vector3& a, const Vector3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-Vector3 normalOnPlane(const std::function<double(double, double)>& height, double x, double y, double spacing, int exponent) {
+Vector3 normalOnPlane(const std::function<double(double, double)>& height, double x, double y, double spacing,
+                      int exponent) {
   std::array<VertexNeighbour, 6> neighbours;
   for (std::size_t k = 0; k < 6; ++k) {
     const double dx = kSteps[k][0] * spacing, dy = kSteps[k][1] * spacing;
@@ -39,21 +39,23 @@ double rmsOnSphere(double spacing, int exponent) {
     for (int j = 0; j < kSamples; ++j) {
       const double x = kRadius * 0.6 * (2.0 * (i + 0.5) / kSamples - 1);
       const double y = kRadius * 0.6 * (2.0 * (j + 0.5) / kSamples - 1);
-      const double error = degreesBetween(normalOnPlane(height, x, y, spacing, exponent), {x, y, height(x, y)});
+      const double error =
+          degreesBetween(normalOnPlane(height, x, y, spacing, exponent), {x, y, height(x, y)});
       sum += error * error;
     }
   }
   return std::sqrt(sum / (kSamples * kSamples));
 }
 
-// The digest states .0798, .0478, .0282, .0524 degree but not over which part of the sphere; +-0.6 radius gives all four
-// within 1.5 %.
+// The digest states .0798, .0478, .0282, .0524 degree but not over which part of the sphere; +-0.6 radius
+// gives all four within 1.5 %.
 TEST(VertexNormals, sphere_errors_are_those_of_the_digest) {
   const std::map<int, double> expected = {{0, 0.0798}, {1, 0.0478}, {2, 0.0282}, {4, 0.0524}};
   for (const auto& [exponent, degrees] : expected) {
     const double measured = rmsOnSphere(90, exponent);
     RecordProperty("rms_p" + std::to_string(exponent), std::to_string(measured));
-    std::printf("sphere 2000 m, 90 m posts, p = %d: %.4f degree rms (digest %.4f)\n", exponent, measured, degrees);
+    std::printf("sphere 2000 m, 90 m posts, p = %d: %.4f degree rms (digest %.4f)\n", exponent, measured,
+                degrees);
     EXPECT_NEAR(measured, degrees, 0.015 * degrees) << "p = " << exponent;
   }
   EXPECT_LT(rmsOnSphere(90, 2), rmsOnSphere(90, 0));
@@ -75,7 +77,8 @@ TEST(VertexNormals, a_plane_is_exact_for_any_exponent) {
 }
 
 // Table 11 once more, straight from its definition, on positions computed in long double.
-Vector3 independentNormal(const RawGrid& grid, const GridGeometry& geometry, int level, std::int64_t column, std::int64_t row) {
+Vector3 independentNormal(const RawGrid& grid, const GridGeometry& geometry, int level, std::int64_t column,
+                          std::int64_t row) {
   using Real = long double;
   using Triple = std::array<Real, 3>;
   const GridHeader& header = grid.header;
@@ -97,14 +100,16 @@ Vector3 independentNormal(const RawGrid& grid, const GridGeometry& geometry, int
     const Real cosine = std::abs(latitude) == 90 ? 0 : std::sin((90 - std::abs(latitude)) * kRadians);
     const Real n = header.ellipsoid.semi_major_axis / std::sqrt(1 - e2 * sine * sine);
     const Real height = geometry.metres(grid.height(c, r));
-    return Triple{(n + height) * cosine * std::cos(longitude), (n + height) * cosine * std::sin(longitude), (n * (1 - e2) + height) * sine};
+    return Triple{(n + height) * cosine * std::cos(longitude), (n + height) * cosine * std::sin(longitude),
+                  (n * (1 - e2) + height) * sine};
   };
   Triple sum{};
   for (std::size_t k = 0; k < 6; ++k) {
     const auto [ai, aj] = kSteps[k];
     const auto [bi, bj] = kSteps[(k + 1) % 6];
     if (!valid(column + ai, row + aj) || !valid(column + bi, row + bj)) continue;
-    const Triple v = position(column, row), a = position(column + ai, row + aj), b = position(column + bi, row + bj);
+    const Triple v = position(column, row), a = position(column + ai, row + aj),
+                 b = position(column + bi, row + bj);
     Triple d1, d2, centroid;
     for (std::size_t q = 0; q < 3; ++q) {
       d1[q] = a[q] - v[q];
@@ -120,8 +125,11 @@ Vector3 independentNormal(const RawGrid& grid, const GridGeometry& geometry, int
     }
   }
   const Real size = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-  if (size == 0) return upVector(rowConstants(header.ellipsoid, geometry.latitude(row * step)), columnConstants(geometry.longitude(column * step)));
-  return {static_cast<double>(sum[0] / size), static_cast<double>(sum[1] / size), static_cast<double>(sum[2] / size)};
+  if (size == 0)
+    return upVector(rowConstants(header.ellipsoid, geometry.latitude(row * step)),
+                    columnConstants(geometry.longitude(column * step)));
+  return {static_cast<double>(sum[0] / size), static_cast<double>(sum[1] / size),
+          static_cast<double>(sum[2] / size)};
 }
 
 std::vector<TerrainTile> tilesOf(const RawGrid& grid, const GridGeometry& geometry, int level) {
@@ -129,7 +137,8 @@ std::vector<TerrainTile> tilesOf(const RawGrid& grid, const GridGeometry& geomet
   const PostRange columns = geometry.nodeColumnsAt(level), rows = geometry.nodeRowsAt(level);
   for (std::int64_t y = rows.begin; y < rows.end; ++y) {
     for (std::int64_t x = columns.begin; x < columns.end; ++x) {
-      tiles.push_back(cutTile(grid, geometry, level, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)));
+      tiles.push_back(
+          cutTile(grid, geometry, level, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)));
     }
   }
   return tiles;
@@ -151,16 +160,17 @@ SyntheticGridOptions areaAt(double south, double west, Rational spacing, VoidPat
 
 class VertexNormalsAt : public testing::TestWithParam<Place> {};
 
-INSTANTIATE_TEST_SUITE_P(, VertexNormalsAt,
-                         testing::Values(Place{"mid_latitude", areaAt(43, -80, {3, 1}, VoidPattern::kNone)},
-                                         Place{"holes", areaAt(46, -122, {1, 1}, VoidPattern::kHole)},
-                                         Place{"scattered_voids", areaAt(27, 86, {3, 1}, VoidPattern::kScattered)},
-                                         Place{"equator", areaAt(-1, 10, {30, 1}, VoidPattern::kNone)},
-                                         Place{"north_pole", areaAt(89, -80, {30, 1}, VoidPattern::kNone)},
-                                         Place{"north_pole_fine", areaAt(90 - 120.0 / 3600, -80, {1, 1}, VoidPattern::kNone)},
-                                         Place{"south_pole", areaAt(-90, 20, {30, 1}, VoidPattern::kScattered)},
-                                         Place{"antimeridian", areaAt(60, 179.5, {30, 1}, VoidPattern::kNone)}),
-                         [](const auto& place) { return std::string(place.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    , VertexNormalsAt,
+    testing::Values(Place{"mid_latitude", areaAt(43, -80, {3, 1}, VoidPattern::kNone)},
+                    Place{"holes", areaAt(46, -122, {1, 1}, VoidPattern::kHole)},
+                    Place{"scattered_voids", areaAt(27, 86, {3, 1}, VoidPattern::kScattered)},
+                    Place{"equator", areaAt(-1, 10, {30, 1}, VoidPattern::kNone)},
+                    Place{"north_pole", areaAt(89, -80, {30, 1}, VoidPattern::kNone)},
+                    Place{"north_pole_fine", areaAt(90 - 120.0 / 3600, -80, {1, 1}, VoidPattern::kNone)},
+                    Place{"south_pole", areaAt(-90, 20, {30, 1}, VoidPattern::kScattered)},
+                    Place{"antimeridian", areaAt(60, 179.5, {30, 1}, VoidPattern::kNone)}),
+    [](const auto& place) { return std::string(place.param.name); });
 
 TEST_P(VertexNormalsAt, agree_with_an_independent_table_11_and_are_finite_unit_vectors) {
   const RawGrid grid = syntheticGrid(GetParam().options);
@@ -172,10 +182,12 @@ TEST_P(VertexNormalsAt, agree_with_an_independent_table_11_and_are_finite_unit_v
       std::size_t k = 0;
       for (int j = 0; j < tile.rows; ++j) {
         for (int i = 0; i < tile.columns; ++i, ++k) {
-          ASSERT_TRUE(std::isfinite(normals[k].x) && std::isfinite(normals[k].y) && std::isfinite(normals[k].z));
+          ASSERT_TRUE(std::isfinite(normals[k].x) && std::isfinite(normals[k].y) &&
+                      std::isfinite(normals[k].z));
           ASSERT_NEAR(length(normals[k]), 1, 1e-12);
           if (!tile.isValid(i, j)) continue;
-          const Vector3 expected = independentNormal(grid, geometry, level, tile.first_column + i, tile.first_row + j);
+          const Vector3 expected =
+              independentNormal(grid, geometry, level, tile.first_column + i, tile.first_row + j);
           const Vector3 difference = normals[k] - expected;
           worst = std::max({worst, std::abs(difference.x), std::abs(difference.y), std::abs(difference.z)});
         }

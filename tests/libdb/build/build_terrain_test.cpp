@@ -1,7 +1,6 @@
 #include "libdb/build/build_terrain.h"
 
 #include <gtest/gtest.h>
-
 #include <map>
 
 #include "libdb/access/database.h"
@@ -37,7 +36,8 @@ void expectExact(const RawGrid& grid, const BuildOptions& options = {}) {
 }
 
 TEST(BuildTerrain, areas_of_any_size_and_place_come_back_exactly) {
-  for (const auto& [columns, rows] : std::initializer_list<std::pair<int, int>>{{2, 2}, {2, 70}, {65, 65}, {66, 64}, {200, 3}, {130, 131}}) {
+  for (const auto& [columns, rows] : std::initializer_list<std::pair<int, int>>{
+           {2, 2}, {2, 70}, {65, 65}, {66, 64}, {200, 3}, {130, 131}}) {
     for (const double west : {-180.0, -80.0, 179.9}) {
       SyntheticGridOptions options;
       options.columns = columns;
@@ -59,7 +59,8 @@ TEST(BuildTerrain, poles_antimeridian_and_equator_come_back_exactly) {
 }
 
 TEST(BuildTerrain, voids_of_every_pattern_come_back_exactly) {
-  for (const VoidPattern voids : {VoidPattern::kScattered, VoidPattern::kHole, VoidPattern::kWestHalf, VoidPattern::kSingle}) {
+  for (const VoidPattern voids :
+       {VoidPattern::kScattered, VoidPattern::kHole, VoidPattern::kWestHalf, VoidPattern::kSingle}) {
     SyntheticGridOptions options;
     options.voids = voids;
     expectExact(syntheticGrid(options), {.leaf_cells = 32});
@@ -83,7 +84,8 @@ TEST(BuildTerrain, bytes_do_not_depend_on_the_number_of_threads) {
   for (const int threads : {2, 7}) {
     const MemoryFileSystem several = buildInMemory(grid, {.leaf_cells = 16, .threads = threads});
     for (const std::string& name : one.list(kMemoryDatabasePath).value()) {
-      EXPECT_EQ(one.bytes(kMemoryDatabasePath + "/" + name), several.bytes(kMemoryDatabasePath + "/" + name)) << name;
+      EXPECT_EQ(one.bytes(kMemoryDatabasePath + "/" + name), several.bytes(kMemoryDatabasePath + "/" + name))
+          << name;
     }
   }
 }
@@ -118,7 +120,8 @@ TEST(BuildTerrain, progress_never_falls_and_ends_at_one) {
 TEST(BuildTerrain, a_leaf_size_that_cannot_be_is_refused) {
   const MemoryFileSystem files;
   for (const int leaf : {0, -64, 7, 100, 4096}) {
-    const Result<BuildSummary> result = buildTerrain(files, syntheticGrid(), kMemoryDatabasePath, {.leaf_cells = leaf});
+    const Result<BuildSummary> result =
+        buildTerrain(files, syntheticGrid(), kMemoryDatabasePath, {.leaf_cells = leaf});
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().kind, ErrorKind::kUsage);
   }

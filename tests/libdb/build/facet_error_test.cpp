@@ -1,10 +1,10 @@
-// The stored error against the surfaces themselves: dense sampling of the full-resolution facets never finds more.
+// The stored error against the surfaces themselves: dense sampling of the full-resolution facets never finds
+// more.
 #include "libdb/build/facet_error.h"
-
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <optional>
 #include <random>
 
@@ -15,26 +15,32 @@
 namespace deltaz {
 namespace {
 
-// Where the line through `foot` along `up` meets the surface of one level, by trying every facet near `column`, `row`
-// (in posts of that level): slow, and independent of how the builder walks.
-std::optional<double> surfaceHeight(const RawGrid& grid, const GridGeometry& geometry, int level, double column, double row,
-                                    const Vector3& foot, const Vector3& up) {
+// Where the line through `foot` along `up` meets the surface of one level, by trying every facet near
+// `column`, `row` (in posts of that level): slow, and independent of how the builder walks.
+std::optional<double> surfaceHeight(const RawGrid& grid, const GridGeometry& geometry, int level,
+                                    double column, double row, const Vector3& foot, const Vector3& up) {
   const std::int64_t step = std::int64_t{1} << level;
   const auto at = [&](std::int64_t i, std::int64_t j) -> std::optional<Vector3> {
     const std::int64_t c = i * step - grid.header.longitude.first, r = j * step - grid.header.latitude.first;
-    if (c < 0 || c >= grid.header.longitude.count || r < 0 || r >= grid.header.latitude.count || !grid.isValid(c, r)) return std::nullopt;
-    return toEarthCentred(grid.header.ellipsoid, {geometry.latitude(j * step), geometry.longitude(i * step), geometry.metres(grid.height(c, r))});
+    if (c < 0 || c >= grid.header.longitude.count || r < 0 || r >= grid.header.latitude.count ||
+        !grid.isValid(c, r))
+      return std::nullopt;
+    return toEarthCentred(grid.header.ellipsoid, {geometry.latitude(j * step), geometry.longitude(i * step),
+                                                  geometry.metres(grid.height(c, r))});
   };
-  const auto tryFacet = [&](std::optional<Vector3> a, std::optional<Vector3> b, std::optional<Vector3> c) -> std::optional<double> {
+  const auto tryFacet = [&](std::optional<Vector3> a, std::optional<Vector3> b,
+                            std::optional<Vector3> c) -> std::optional<double> {
     if (!a || !b || !c) return std::nullopt;
     // Inside if the line passes all three edges on the same side.
-    const double s0 = dot(up, cross(*a - foot, *b - foot)), s1 = dot(up, cross(*b - foot, *c - foot)), s2 = dot(up, cross(*c - foot, *a - foot));
+    const double s0 = dot(up, cross(*a - foot, *b - foot)), s1 = dot(up, cross(*b - foot, *c - foot)),
+                 s2 = dot(up, cross(*c - foot, *a - foot));
     const double slack = 1e-9 * (std::abs(s0) + std::abs(s1) + std::abs(s2));
     if (!(s0 >= -slack && s1 >= -slack && s2 >= -slack)) return std::nullopt;
     const Vector3 normal = cross(*b - *a, *c - *a);
     return dot(*a - foot, normal) / dot(up, normal);
   };
-  const auto I0 = static_cast<std::int64_t>(std::floor(column)), J0 = static_cast<std::int64_t>(std::floor(row));
+  const auto I0 = static_cast<std::int64_t>(std::floor(column)),
+             J0 = static_cast<std::int64_t>(std::floor(row));
   for (std::int64_t J = J0 - 1; J <= J0 + 1; ++J) {
     for (std::int64_t I = I0 - 1; I <= I0 + 1; ++I) {
       if (const auto h = tryFacet(at(I, J), at(I + 1, J), at(I + 1, J + 1))) return h;
@@ -81,10 +87,12 @@ TEST_P(FacetErrorAt, dense_sampling_never_exceeds_the_stored_error) {
     double closest = 0;
     int sampled = 0;
     for (int sample = 0; sample < 3000; ++sample) {
-      const double column = static_cast<double>(header.longitude.first) +
-                            std::uniform_real_distribution<double>(0, static_cast<double>(header.longitude.count - 1))(random);
-      const double row = static_cast<double>(header.latitude.first) +
-                         std::uniform_real_distribution<double>(0, static_cast<double>(header.latitude.count - 1))(random);
+      const double column =
+          static_cast<double>(header.longitude.first) +
+          std::uniform_real_distribution<double>(0, static_cast<double>(header.longitude.count - 1))(random);
+      const double row =
+          static_cast<double>(header.latitude.first) +
+          std::uniform_real_distribution<double>(0, static_cast<double>(header.latitude.count - 1))(random);
       const double longitude = -180 + column * header.longitude.spacing_degrees;
       const double latitude = -90 + row * header.latitude.spacing_degrees;
       const RowConstants row_constant = rowConstants(header.ellipsoid, latitude);
@@ -103,11 +111,13 @@ TEST_P(FacetErrorAt, dense_sampling_never_exceeds_the_stored_error) {
             node.record.y != static_cast<std::int32_t>(std::floor(row / span))) {
           continue;
         }
-        ASSERT_LE(error, node.geometricError()) << "level " << level << " at " << latitude << ", " << longitude;
+        ASSERT_LE(error, node.geometricError())
+            << "level " << level << " at " << latitude << ", " << longitude;
         closest = std::max(closest, error / node.geometricError());
       }
     }
-    std::printf("%s level %d: %d samples, at most %.3f of the stored error\n", GetParam().name, level, sampled, closest);
+    std::printf("%s level %d: %d samples, at most %.3f of the stored error\n", GetParam().name, level,
+                sampled, closest);
     EXPECT_GT(sampled, 100);
     EXPECT_GT(closest, 0.2) << "a bound so far off says nothing";
   }
@@ -122,10 +132,11 @@ TEST(FacetError, the_sag_of_a_chord_counts) {
   RawGrid grid = syntheticGrid(options);
   std::fill(grid.heights.begin(), grid.heights.end(), 0);
   const GridGeometry geometry(grid.header);
-  // A flat Earth would have no error; level 1 has chords of a degree, 3/4 of whose sag is new: the fine ones sag too,
-  // but at the posts in the middle the full 242 m (with the diagonal, 484 m) count.
-  const std::vector<AncestorError> errors = leafErrors(grid, geometry, 2, static_cast<std::int32_t>(floorDivide(grid.header.longitude.first, 64)),
-                                                       static_cast<std::int32_t>(floorDivide(grid.header.latitude.first, 64)));
+  // A flat Earth would have no error; level 1 has chords of a degree, 3/4 of whose sag is new: the fine ones
+  // sag too, but at the posts in the middle the full 242 m (with the diagonal, 484 m) count.
+  const std::vector<AncestorError> errors =
+      leafErrors(grid, geometry, 2, static_cast<std::int32_t>(floorDivide(grid.header.longitude.first, 64)),
+                 static_cast<std::int32_t>(floorDivide(grid.header.latitude.first, 64)));
   EXPECT_NEAR(errors[0].maximum * kErrorUnit, 484, 6);
 }
 

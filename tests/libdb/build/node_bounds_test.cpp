@@ -1,8 +1,7 @@
 #include "libdb/build/node_bounds.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "libdb/access/database.h"
@@ -22,7 +21,8 @@ void expectContainment(const Database& database, const Node& node, std::vector<N
     const auto rows = geometry.rowConstantsOf(t.level, {t.first_row, t.first_row + t.rows});
     const auto columns = geometry.columnConstantsOf(t.level, {t.first_column, t.first_column + t.columns});
     const auto place = [&](int i, int j) {
-      return earthCentred(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)], geometry.metres(t.height(i, j)));
+      return earthCentred(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)],
+                          geometry.metres(t.height(i, j)));
     };
     for (const Node& ancestor : path) {
       const Vector3 axis = unpackNormal(ancestor.record.mean_normal);
@@ -37,11 +37,13 @@ void expectContainment(const Database& database, const Node& node, std::vector<N
           }
           if (i + 1 >= t.columns || j + 1 >= t.rows) continue;
           if (t.bottomFaceValid(i, j)) {
-            const Vector3 normal = normalized(cross(place(i + 1, j) - place(i, j), place(i + 1, j + 1) - place(i, j)));
+            const Vector3 normal =
+                normalized(cross(place(i + 1, j) - place(i, j), place(i + 1, j + 1) - place(i, j)));
             ASSERT_GE(dot(normal, axis), cosine - 1e-12);
           }
           if (t.topFaceValid(i, j)) {
-            const Vector3 normal = normalized(cross(place(i + 1, j + 1) - place(i, j), place(i, j + 1) - place(i, j)));
+            const Vector3 normal =
+                normalized(cross(place(i + 1, j + 1) - place(i, j), place(i, j + 1) - place(i, j)));
             ASSERT_GE(dot(normal, axis), cosine - 1e-12);
           }
         }

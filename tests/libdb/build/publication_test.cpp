@@ -1,8 +1,7 @@
 #include "libdb/build/publication.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <gtest/gtest.h>
 
 #include "libdb/access/database.h"
 #include "libdb/build/build_terrain.h"
@@ -46,7 +45,8 @@ TEST(Publication, a_reader_that_opened_before_an_overwrite_keeps_its_state) {
   ASSERT_TRUE(buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true}).ok());
   const Result<std::vector<Node>> leaves = nodesOfLevel(old_state.value(), 0, 0);
   ASSERT_TRUE(leaves.ok()) << leaves.error().message();
-  EXPECT_EQ(old_state.value().terrain(leaves.value().front()).value().height(0, 0), gridOfSeed(1).height(0, 0));
+  EXPECT_EQ(old_state.value().terrain(leaves.value().front()).value().height(0, 0),
+            gridOfSeed(1).height(0, 0));
 }
 
 TEST(Publication, what_is_not_a_database_is_never_overwritten) {
@@ -54,7 +54,8 @@ TEST(Publication, what_is_not_a_database_is_never_overwritten) {
   ASSERT_TRUE(files.makeDirectory("/folder").ok());
   ASSERT_TRUE(files.makeDirectory(kMemoryDatabasePath).ok());
   files.setBytes(kMemoryDatabasePath + "/precious.txt", {std::byte{1}});
-  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {.overwrite = true});
+  const Result<BuildSummary> refused =
+      buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {.overwrite = true});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   EXPECT_EQ(files.list(kMemoryDatabasePath).value(), std::vector<std::string>{"precious.txt"});
@@ -75,7 +76,8 @@ TEST(Publication, a_second_writer_is_turned_away) {
   MemoryFileSystem files = buildInMemory(gridOfSeed(1));
   const auto held = files.lock(kMemoryDatabasePath + "/lock");
   ASSERT_TRUE(held.ok());
-  const Result<BuildSummary> refused = buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true});
+  const Result<BuildSummary> refused =
+      buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().kind, ErrorKind::kCannotAccess);
 }

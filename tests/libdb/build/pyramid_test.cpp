@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-
 #include <set>
 #include <tuple>
 
@@ -11,7 +10,8 @@
 namespace deltaz {
 namespace {
 
-GridHeader headerOf(std::int64_t first_column, std::int64_t columns, std::int64_t first_row, std::int64_t rows) {
+GridHeader headerOf(std::int64_t first_column, std::int64_t columns, std::int64_t first_row,
+                    std::int64_t rows) {
   GridHeader header = syntheticGrid().header;
   header.leaf_cells = 8;
   header.longitude.first = first_column;
@@ -22,8 +22,9 @@ GridHeader headerOf(std::int64_t first_column, std::int64_t columns, std::int64_
 }
 
 RC_GTEST_PROP(Pyramid, every_node_stands_once_behind_its_parent_and_between_its_level, ()) {
-  const GridGeometry geometry(headerOf(*rc::gen::inRange<std::int64_t>(-200, 200), *rc::gen::inRange<std::int64_t>(2, 200),
-                                       *rc::gen::inRange<std::int64_t>(-200, 200), *rc::gen::inRange<std::int64_t>(2, 200)));
+  const GridGeometry geometry(
+      headerOf(*rc::gen::inRange<std::int64_t>(-200, 200), *rc::gen::inRange<std::int64_t>(2, 200),
+               *rc::gen::inRange<std::int64_t>(-200, 200), *rc::gen::inRange<std::int64_t>(2, 200)));
   const PyramidPlan plan = planPyramid(geometry);
   std::set<std::tuple<int, int, int>> places;
   for (std::uint32_t index = 0; index < plan.nodes.size(); ++index) {
@@ -36,12 +37,14 @@ RC_GTEST_PROP(Pyramid, every_node_stands_once_behind_its_parent_and_between_its_
     }
     const PlannedNode& parent = plan.nodes[node.parent];
     RC_ASSERT(node.parent < index);
-    RC_ASSERT(parent.x == floorDivide(node.x, 2) && parent.y == floorDivide(node.y, 2) && parent.level == node.level + 1);
+    RC_ASSERT(parent.x == floorDivide(node.x, 2) && parent.y == floorDivide(node.y, 2) &&
+              parent.level == node.level + 1);
     RC_ASSERT(index >= parent.first_child && index < parent.first_child + parent.child_count);
   }
   for (int level = 0; level < plan.level_count; ++level) {
     const auto count = geometry.nodeColumnsAt(level).size() * geometry.nodeRowsAt(level).size();
-    RC_ASSERT(static_cast<std::int64_t>(plan.level_end[static_cast<std::size_t>(level)] - plan.level_begin[static_cast<std::size_t>(level)]) == count);
+    RC_ASSERT(static_cast<std::int64_t>(plan.level_end[static_cast<std::size_t>(level)] -
+                                        plan.level_begin[static_cast<std::size_t>(level)]) == count);
   }
   const std::size_t top = plan.level_end[static_cast<std::size_t>(plan.level_count - 1)];
   RC_ASSERT(top <= 4);

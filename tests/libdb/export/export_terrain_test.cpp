@@ -1,8 +1,7 @@
 #include "libdb/export/export_terrain.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <gtest/gtest.h>
 
 #include "libdb/build/build_terrain.h"
 #include "tests/support/synthetic_grid.h"
@@ -53,7 +52,8 @@ TEST(ExportTerrain, a_coarser_level_keeps_its_posts_in_place) {
   const std::int64_t first = grid.header.longitude.first;
   const std::int64_t skipped = ceilDivide(first, 4) * 4 - first;
   EXPECT_NEAR(coarse.longitude(back.value().header.longitude.first), fine.longitude(first + skipped), 1e-10);
-  EXPECT_EQ(back.value().height(0, 0), grid.height(skipped, ceilDivide(grid.header.latitude.first, 4) * 4 - grid.header.latitude.first));
+  EXPECT_EQ(back.value().height(0, 0),
+            grid.height(skipped, ceilDivide(grid.header.latitude.first, 4) * 4 - grid.header.latitude.first));
 }
 
 TEST(ExportTerrain, an_existing_file_is_kept_unless_overwriting) {
@@ -62,10 +62,14 @@ TEST(ExportTerrain, an_existing_file_is_kept_unless_overwriting) {
   ASSERT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {}).ok());
   EXPECT_EQ(exportTerrain(openSample(files), folder.file("dem.tif"), {}).error().kind, ErrorKind::kUsage);
   EXPECT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {.overwrite = true}).ok());
-  EXPECT_EQ(exportTerrain(openSample(files), folder.file("none/dem.tif"), {}).error().kind, ErrorKind::kCannotAccess);
-  EXPECT_EQ(exportTerrain(openSample(files), folder.path(), {.overwrite = true}).error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.grid = 1}).error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.level = 9}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("none/dem.tif"), {}).error().kind,
+            ErrorKind::kCannotAccess);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.path(), {.overwrite = true}).error().kind,
+            ErrorKind::kUsage);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.grid = 1}).error().kind,
+            ErrorKind::kUsage);
+  EXPECT_EQ(exportTerrain(openSample(files), folder.file("b.tif"), {.level = 9}).error().kind,
+            ErrorKind::kUsage);
   // Nothing but the one file: no temporary one is left.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }

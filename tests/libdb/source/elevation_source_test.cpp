@@ -1,12 +1,11 @@
 #include "libdb/source/elevation_source.h"
 
-#include <gdal_priv.h>
-#include <gtest/gtest.h>
-#include <ogr_spatialref.h>
-
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
 
 #include "tests/support/temporary_directory.h"
 
@@ -26,7 +25,8 @@ struct RasterOptions {
 std::string makeRaster(const TemporaryDirectory& folder, const RasterOptions& options = {}) {
   GDALAllRegister();
   const std::string path = folder.file("dem.tif");
-  GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 5, 4, options.bands, options.type, nullptr));
+  GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path.c_str(), 5, 4, options.bands, options.type, nullptr));
   if (options.georeferenced) {
     std::array<double, 6> transform = options.transform;
     dataset->SetGeoTransform(transform.data());
@@ -40,7 +40,9 @@ std::string makeRaster(const TemporaryDirectory& folder, const RasterOptions& op
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 5; ++column) heights.push_back(10 * row + column);
   }
-  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 5, 4, heights.data(), 5, 4, GDT_Int32, 0, 0, nullptr), CE_None);
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 5, 4, heights.data(), 5, 4, GDT_Int32, 0, 0,
+                                                nullptr),
+            CE_None);
   if (options.change) options.change(*dataset);
   return path;
 }
@@ -59,7 +61,9 @@ TEST(ElevationSource, posts_are_pixel_centres_for_both_registrations) {
   for (const char* const registration : {"Area", "Point"}) {
     const TemporaryDirectory folder;
     RasterOptions options;
-    options.change = [&](GDALDataset& dataset) { dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, registration); };
+    options.change = [&](GDALDataset& dataset) {
+      dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, registration);
+    };
     const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
     ASSERT_TRUE(grid.ok()) << grid.error().message();
     EXPECT_EQ(grid.value().header.longitude.first, 180 * 3600 - 80);
@@ -160,7 +164,8 @@ TEST(ElevationSource, missing_empty_and_foreign_files_are_told_apart) {
   const TemporaryDirectory folder;
   EXPECT_EQ(readElevationSource(folder.file("none.tif"), {}).error().kind, ErrorKind::kCannotAccess);
   std::ofstream(folder.file("empty.tif")).close();
-  EXPECT_NE(readElevationSource(folder.file("empty.tif"), {}).error().message().find("empty"), std::string::npos);
+  EXPECT_NE(readElevationSource(folder.file("empty.tif"), {}).error().message().find("empty"),
+            std::string::npos);
   std::ofstream(folder.file("text.tif")) << "This is not a raster.\n";
   EXPECT_EQ(readElevationSource(folder.file("text.tif"), {}).error().kind, ErrorKind::kInvalid);
   EXPECT_EQ(readElevationSource(folder.path(), {}).error().kind, ErrorKind::kInvalid);

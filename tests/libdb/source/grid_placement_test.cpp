@@ -1,9 +1,8 @@
 #include "libdb/source/grid_placement.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-
-#include <cmath>
 
 #include "libdb/access/grid_geometry.h"
 
@@ -34,7 +33,8 @@ TEST(GridPlacement, pixel_centred_global_grids_keep_their_half_post_phase) {
 }
 
 RC_GTEST_PROP(GridPlacement, posts_stay_where_the_source_has_them, ()) {
-  const double spacing = *rc::gen::element(3.0 / 3600, 0.000833333, 0.0002777778, 0.1, 1e-5, *rc::gen::inRange(1, 1000000) * 1e-8);
+  const double spacing = *rc::gen::element(3.0 / 3600, 0.000833333, 0.0002777778, 0.1, 1e-5,
+                                           *rc::gen::inRange(1, 1000000) * 1e-8);
   const double first = *rc::gen::inRange(-180000000, 180000000) * 1e-6;
   const std::int64_t count = *rc::gen::inRange<std::int64_t>(2, 4000);
   const GridAxis axis = placeAxis(first, spacing, count, -180);
