@@ -2,8 +2,8 @@
 
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <fmt/format.h>
+#include <memory>
 #include <unistd.h>
 
 #include "formats/file_system.h"

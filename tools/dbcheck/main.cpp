@@ -152,10 +152,10 @@ Result<int> check(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace deltaz;
-  CLI::App app("Proves a terrain database right, or says exactly what is wrong with it.", "dbcheck");
-  Options options;
-  addOptions(app, options);
   return runTool("dbcheck", [&]() -> Result<int> {
+    CLI::App app("Proves a terrain database right, or says exactly what is wrong with it.", "dbcheck");
+    Options options;
+    addOptions(app, options);
     if (const auto code = parseCommandLine(app, "dbcheck", argc, argv)) return *code;
     return options.list_codes || !options.explain.empty() ? listCodes(options) : check(options);
   });

@@ -88,10 +88,10 @@ Result<int> run(const ViewOptions& options) {
 
 int main(int argc, char** argv) {
   using namespace deltaz;
-  CLI::App app("Draws a terrain database from a viewpoint.", "dbview");
-  ViewOptions options;
-  addViewOptions(app, options);
   return runTool("dbview", [&]() -> Result<int> {
+    CLI::App app("Draws a terrain database from a viewpoint.", "dbview");
+    ViewOptions options;
+    addViewOptions(app, options);
     if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
     return run(options);
   });
