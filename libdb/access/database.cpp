@@ -77,6 +77,21 @@ double Node::coverageError() const {
 }
 
 Result<Database> Database::open(const FileSystem& files, const std::string& path) {
+  // A writer may replace the database between our reading of area.json and our opening of its files: then the
+  // new state is opened instead. Several replacements in a row are possible, endless ones are not.
+  constexpr int kAttempts = 5;
+  const std::string area_path = joinPath(path, std::string(kAreaFileName));
+  for (int attempt = 1;; ++attempt) {
+    std::vector<std::byte> text;
+    Result<Database> database = openOnce(files, path, text);
+    if (database.ok() || attempt == kAttempts || text.empty()) return database;
+    const Result<std::vector<std::byte>> now = readWholeFile(files, area_path, kMaximumAreaBytes);
+    if (!now.ok() || now.value() == text) return database;
+  }
+}
+
+Result<Database> Database::openOnce(const FileSystem& files, const std::string& path,
+                                    std::vector<std::byte>& text) {
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
   if (type == PathType::kAbsent)
     return accessError(path, "cannot open the database", "there is no such folder");
@@ -90,7 +105,7 @@ Result<Database> Database::open(const FileSystem& files, const std::string& path
     return invalidError(IssueCode::kManSyntax, path, "this is not a deltaz database",
                         "there is no area.json in it");
   }
-  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> text, readWholeFile(files, area_path, kMaximumAreaBytes));
+  DELTAZ_TRY_ASSIGN(text, readWholeFile(files, area_path, kMaximumAreaBytes));
   Database database;
   database.path_ = path;
   database.area_bytes_ = text.size();
@@ -113,7 +128,7 @@ Result<Database> Database::open(const FileSystem& files, const std::string& path
     database.segments_.push_back(std::move(reader));
   }
   if (!database.nodes_) return invalidError(IssueCode::kManField, area_path, "no node file is listed");
-  const std::uint32_t pages = (database.area_.node_count + kNodesPerPage - 1) / kNodesPerPage;
+  const std::uint64_t pages = (std::uint64_t{database.area_.node_count} + kNodesPerPage - 1) / kNodesPerPage;
   if (database.nodes_->blockCount() != pages) {
     return invalidError(IssueCode::kManField, area_path,
                         fmt::format("{} records need {} pages, the node file has {}",

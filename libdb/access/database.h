@@ -66,6 +66,9 @@ class Database {
 
  private:
   Database() = default;
+  // One attempt; `text` becomes what stood in area.json.
+  static Result<Database> openOnce(const FileSystem& files, const std::string& path,
+                                   std::vector<std::byte>& text);
 
   std::string path_;
   AreaHeader area_;

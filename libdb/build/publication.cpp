@@ -120,17 +120,22 @@ Status Publication::beginNew() {
   const std::string parent = parentPath(target_);
   const std::string prefix = temporaryPrefix(target_);
   sweepLeftOvers(*files_, parent, prefix);
-  folder_ = joinPath(parent, fmt::format("{}{}", prefix, ::getpid()));
-  // Another thread of this process may be building the same target.
-  for (int attempt = 1; attempt < 100; ++attempt) {
-    DELTAZ_TRY_ASSIGN(const PathType type, files_->typeOf(folder_));
-    if (type == PathType::kAbsent) break;
+  // Another thread may be building the same target, and another process may sweep our folder before it is
+  // locked: then the next name is tried.
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     folder_ = joinPath(parent, fmt::format("{}{}-{}", prefix, ::getpid(), attempt));
+    DELTAZ_TRY_ASSIGN(const PathType type, files_->typeOf(folder_));
+    if (type != PathType::kAbsent) continue;
+    DELTAZ_TRY(files_->makeDirectory(folder_));
+    made_folder_ = true;
+    const std::string lock_path = joinPath(folder_, std::string(kLockFileName));
+    DELTAZ_TRY_ASSIGN(lock_, files_->lock(lock_path));
+    DELTAZ_TRY_ASSIGN(const PathType lock_type, files_->typeOf(lock_path));
+    if (lock_type == PathType::kFile) return Success{};
+    made_folder_ = false;
   }
-  DELTAZ_TRY(files_->makeDirectory(folder_));
-  made_folder_ = true;
-  DELTAZ_TRY_ASSIGN(lock_, files_->lock(joinPath(folder_, std::string(kLockFileName))));
-  return Success{};
+  return accessError(parent, "cannot make a folder to build in", "every name for it is taken");
 }
 
 Status Publication::beginOverwrite() {

@@ -1,5 +1,6 @@
 #include "libdb/source/gdal_session.h"
 
+#include <algorithm>
 #include <cpl_error.h>
 #include <gdal.h>
 #include <mutex>
@@ -25,7 +26,11 @@ GdalSession::~GdalSession() {
 }
 
 std::string GdalSession::lastFailure() const {
-  return failure_.empty() ? "no reason given" : failure_;
+  std::string text = failure_.empty() ? "no reason given" : failure_;
+  // An error is one line.
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
 }
 
 }  // namespace deltaz

@@ -74,6 +74,14 @@ TEST(Database, a_missing_or_exchanged_file_is_found_on_opening) {
   EXPECT_EQ(Database::open(files, kMemoryDatabasePath).error().code, IssueCode::kIoMissingFile);
 }
 
+TEST(Database, a_record_count_at_the_integer_limit_is_refused) {
+  MemoryFileSystem files = buildInMemory(syntheticGrid());
+  DatabaseEditor editor(files, kMemoryDatabasePath);
+  editor.area.node_count = 0xFFFFFFFF;
+  editor.saveArea();
+  EXPECT_EQ(Database::open(files, kMemoryDatabasePath).error().code, IssueCode::kManField);
+}
+
 TEST(Database, children_that_lead_in_circles_are_refused) {
   MemoryFileSystem files = buildInMemory(syntheticGrid());
   DatabaseEditor editor(files, kMemoryDatabasePath);

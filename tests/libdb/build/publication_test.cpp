@@ -1,11 +1,16 @@
 #include "libdb/build/publication.h"
 
 #include <algorithm>
+#include <atomic>
 #include <gtest/gtest.h>
+#include <thread>
+#include <vector>
 
 #include "libdb/access/database.h"
 #include "libdb/build/build_terrain.h"
+#include "libdb/export/export_terrain.h"
 #include "tests/support/synthetic_grid.h"
+#include "tests/support/temporary_directory.h"
 
 namespace deltaz {
 namespace {
@@ -47,6 +52,38 @@ TEST(Publication, a_reader_that_opened_before_an_overwrite_keeps_its_state) {
   ASSERT_TRUE(leaves.ok()) << leaves.error().message();
   EXPECT_EQ(old_state.value().terrain(leaves.value().front()).value().height(0, 0),
             gridOfSeed(1).height(0, 0));
+}
+
+// Readers that open, and read to the end, while the database is replaced again and again: each sees one
+// state.
+TEST(Publication, readers_see_one_state_while_it_is_replaced) {
+  const TemporaryDirectory folder;
+  const std::string target = folder.file("area.dz");
+  const RawGrid even = gridOfSeed(1), odd = gridOfSeed(2);
+  ASSERT_TRUE(buildTerrain(localFileSystem(), even, target, {}).ok());
+  std::atomic<bool> done = false;
+  std::atomic<int> opened = 0;
+  std::vector<std::thread> readers;
+  for (int k = 0; k < 4; ++k) {
+    readers.emplace_back([&] {
+      while (!done) {
+        Result<Database> database = Database::open(localFileSystem(), target);
+        ASSERT_TRUE(database.ok()) << database.error().message();
+        const Result<RawGrid> grid = readGrid(database.value(), 0, 0);
+        ASSERT_TRUE(grid.ok()) << grid.error().message();
+        ASSERT_TRUE(grid.value().heights == even.heights || grid.value().heights == odd.heights);
+        ++opened;
+      }
+    });
+  }
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(
+        buildTerrain(localFileSystem(), k % 2 == 0 ? odd : even, target, {.overwrite = true, .threads = 1})
+            .ok());
+  }
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_GT(opened, 4);
 }
 
 TEST(Publication, what_is_not_a_database_is_never_overwritten) {
