@@ -65,6 +65,7 @@ Json toJson(const GridHeader& grid) {
   json["crs"] = grid.crs_wkt;
   json["horizontal_datum"] = grid.horizontal_datum;
   json["vertical_datum"] = grid.vertical_datum;
+  json["coordinate_epoch"] = grid.coordinate_epoch ? Json(*grid.coordinate_epoch) : Json(nullptr);
   json["ellipsoid"] = {{"semi_major_axis", grid.ellipsoid.semi_major_axis},
                        {"inverse_flattening", grid.ellipsoid.inverse_flattening}};
   json["unit"] = grid.unit;
@@ -175,7 +176,7 @@ class Members {
 
 GridAxis readAxis(Members members, double full_circle) {
   GridAxis axis;
-  axis.spacing_degrees = members.number("spacing_degrees", 1e-9, full_circle);
+  axis.spacing_degrees = members.number("spacing_degrees", kLeastSpacingDegrees, full_circle);
   if (const Json* exact = members.find("exact_spacing_arcseconds"); exact != nullptr && !exact->is_null()) {
     axis.exact_spacing = members.rationalOf(*exact, "exact_spacing_arcseconds");
     const double degrees = axis.exact_spacing->value() / 3600.0;
@@ -221,6 +222,9 @@ GridHeader readGrid(const Json& json, const std::string& path, std::string& faul
   grid.crs_wkt = members.text("crs");
   grid.horizontal_datum = members.text("horizontal_datum");
   grid.vertical_datum = members.text("vertical_datum");
+  if (const Json* epoch = members.find("coordinate_epoch"); epoch != nullptr && !epoch->is_null()) {
+    grid.coordinate_epoch = members.numberOf(*epoch, "coordinate_epoch", 1, 1e5);
+  }
   Members ellipsoid = members.object("ellipsoid");
   grid.ellipsoid.semi_major_axis = ellipsoid.number("semi_major_axis", 1, 1e8);
   grid.ellipsoid.inverse_flattening = ellipsoid.number("inverse_flattening", 0, 1e12);
@@ -281,8 +285,8 @@ AreaHeader readArea(const Json& json, std::string& fault) {
         members.integerOf(centroid[i], "centroid", -(std::int64_t{1} << 40), std::int64_t{1} << 40);
   }
   Members heights = members.object("heights");
-  area.lowest_height = heights.number("lowest", -1e9, 1e9);
-  area.highest_height = heights.number("highest", -1e9, 1e9);
+  area.lowest_height = heights.number("lowest", -kMaximumHeightMetres, kMaximumHeightMetres);
+  area.highest_height = heights.number("highest", -kMaximumHeightMetres, kMaximumHeightMetres);
   if (area.highest_height < area.lowest_height) heights.fail("", "are not in order");
   area.sea_drop = members.number("sea_drop", 0, 1e8);
   Members nodes = members.object("nodes");

@@ -20,6 +20,9 @@ inline constexpr std::string_view kAreaFileName = "area.json";
 inline constexpr std::string_view kLockFileName = "lock";
 inline constexpr int kAreaVersion = 1;
 inline constexpr std::uint64_t kMaximumAreaBytes = 64u << 20;
+// Posts stand no closer than this, 0.1 mm on the ground; heights and their range stay within this, metres.
+inline constexpr double kLeastSpacingDegrees = 1e-9;
+inline constexpr double kMaximumHeightMetres = 1e10;
 // Centroids and radii are stored in units of 1/64 m, so that sums of offsets are exact.
 inline constexpr double kCentroidUnit = 1.0 / 64.0;
 // Geometric and coverage errors are stored in units of 1/1024 m.
@@ -67,9 +70,10 @@ struct SourceDescription {
 
 struct GridHeader {
   std::string kind = "geodetic";
-  std::string crs_wkt;           // horizontal CRS as WKT2
-  std::string horizontal_datum;  // "WGS 84"; name only, the ellipsoid below is what counts
-  std::string vertical_datum;    // name, or "unknown"
+  std::string crs_wkt;                     // horizontal CRS as WKT2
+  std::string horizontal_datum;            // "WGS 84"; name only, the ellipsoid below is what counts
+  std::string vertical_datum;              // name, or "unknown"
+  std::optional<double> coordinate_epoch;  // decimal year, of coordinates in a dynamic datum
   EllipsoidShape ellipsoid;
   std::string unit;  // of the quantum: "metre"
   Rational quantum;  // metres per height step

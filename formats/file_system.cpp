@@ -182,6 +182,13 @@ class LocalFileSystem final : public FileSystem {
     return Success{};
   }
 
+  Status syncFile(const std::string& path) const override {
+    const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (descriptor.get() < 0) return systemError(path, "cannot open", errno);
+    if (::fsync(descriptor.get()) != 0) return systemError(path, "cannot write to the disk", errno);
+    return Success{};
+  }
+
   Status syncDirectory(const std::string& path) const override {
     Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (descriptor.get() < 0) return systemError(path, "cannot open the folder", errno);

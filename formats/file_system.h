@@ -61,6 +61,8 @@ class FileSystem {
   virtual Status removeFile(const std::string& path) const = 0;
   // Removes a folder and the files in it (not folders inside it).
   virtual Status removeDirectory(const std::string& path) const = 0;
+  // Returns once the bytes of a file written by somebody else (GDAL) are on the disk.
+  virtual Status syncFile(const std::string& path) const = 0;
   // Makes the names in a folder durable.
   virtual Status syncDirectory(const std::string& path) const = 0;
   // Takes the writers' lock on `path`, creating the file; fails at once with kCannotAccess if another process

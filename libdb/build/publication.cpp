@@ -46,6 +46,9 @@ Result<AreaHeader> existingArea(const FileSystem& files, const std::string& targ
 
 // The generation a file name of ours carries, "nodes-000012.dzn" -> 12; 0 for other names.
 std::uint64_t generationOf(const std::string& name) {
+  const bool ours = (name.starts_with("nodes-") && name.ends_with(".dzn")) ||
+                    (name.starts_with("terrain-") && name.ends_with(".dzt"));
+  if (!ours) return 0;
   const std::size_t dash = name.find('-');
   if (dash == std::string::npos) return 0;
   std::uint64_t generation = 0;
@@ -91,7 +94,6 @@ Publication::Publication(Publication&& other) noexcept
       made_folder_(other.made_folder_),
       generation_(other.generation_),
       new_names_(std::move(other.new_names_)),
-      old_names_(std::move(other.old_names_)),
       lock_(std::move(other.lock_)) {}
 
 Publication::~Publication() {
@@ -123,6 +125,8 @@ Status Publication::beginNew() {
   // Another thread may be building the same target, and another process may sweep our folder before it is
   // locked: then the next name is tried.
   constexpr int kAttempts = 100;
+  constexpr int kRefusals = 3;
+  int refused = 0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     folder_ = joinPath(parent, fmt::format("{}{}-{}", prefix, ::getpid(), attempt));
     DELTAZ_TRY_ASSIGN(const PathType type, files_->typeOf(folder_));
@@ -130,7 +134,15 @@ Status Publication::beginNew() {
     DELTAZ_TRY(files_->makeDirectory(folder_));
     made_folder_ = true;
     const std::string lock_path = joinPath(folder_, std::string(kLockFileName));
-    DELTAZ_TRY_ASSIGN(lock_, files_->lock(lock_path));
+    Result<std::unique_ptr<FileLock>> lock = files_->lock(lock_path);
+    if (!lock.ok()) {
+      // Swept, or a disk that is full; the second will say so again.
+      (void)files_->removeDirectory(folder_);
+      made_folder_ = false;
+      if (++refused == kRefusals) return lock.error();
+      continue;
+    }
+    lock_ = std::move(lock).value();
     DELTAZ_TRY_ASSIGN(const PathType lock_type, files_->typeOf(lock_path));
     if (lock_type == PathType::kFile) return Success{};
     made_folder_ = false;
@@ -144,7 +156,6 @@ Status Publication::beginOverwrite() {
   DELTAZ_TRY_ASSIGN(lock_, files_->lock(joinPath(folder_, std::string(kLockFileName))));
   // Looked at again under the lock: another writer may just have finished.
   DELTAZ_TRY_ASSIGN(const AreaHeader area, existingArea(*files_, target_));
-  for (const FileReference& file : area.files) old_names_.push_back(file.name);
   generation_ = area.generation;
   DELTAZ_TRY_ASSIGN(const std::vector<std::string> names, files_->list(folder_));
   for (const std::string& name : names) generation_ = std::max(generation_, generationOf(name));
@@ -167,6 +178,10 @@ Status Publication::writeArea(const std::string& name, const AreaHeader& area) {
 
 Status Publication::publish(AreaHeader& area) {
   area.generation = generation_;
+  // Nothing is published that this version would refuse to open.
+  if (const Result<AreaHeader> back = parseArea(serializeArea(area), target_); !back.ok()) {
+    return internalError(target_, "the database would not be readable: " + back.error().message());
+  }
   if (!replaces_) {
     DELTAZ_TRY(writeArea(std::string(kAreaFileName), area));
     DELTAZ_TRY(files_->syncDirectory(folder_));
@@ -183,8 +198,15 @@ Status Publication::publish(AreaHeader& area) {
   DELTAZ_TRY(files_->rename(fresh, joinPath(folder_, std::string(kAreaFileName))));
   done_ = true;
   DELTAZ_TRY(files_->syncDirectory(folder_));
-  // The old state's files serve nobody who opens from now on. Failing to remove them loses nothing.
-  for (const std::string& name : old_names_) (void)files_->removeFile(joinPath(folder_, name));
+  // The files of older states, and of writers that died, serve nobody who opens from now on. Failing to
+  // remove them loses nothing.
+  const Result<std::vector<std::string>> names = files_->list(folder_);
+  if (!names.ok()) return Success{};
+  for (const std::string& name : names.value()) {
+    const bool listed = std::any_of(area.files.begin(), area.files.end(),
+                                    [&](const FileReference& file) { return file.name == name; });
+    if (!listed && generationOf(name) > 0) (void)files_->removeFile(joinPath(folder_, name));
+  }
   return Success{};
 }
 

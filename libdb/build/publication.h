@@ -52,7 +52,6 @@ class Publication {
   bool made_folder_ = false;
   std::uint64_t generation_ = 1;
   std::vector<std::string> new_names_;  // written by us into folder_
-  std::vector<std::string> old_names_;  // of the state we replace
   std::unique_ptr<FileLock> lock_;
 };
 

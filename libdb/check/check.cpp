@@ -21,7 +21,9 @@ void runRules(CheckContext& context) {
 
 }  // namespace
 
-Report checkDatabase(const FileSystem& files, const std::string& path, const CheckOptions& options) {
+namespace {
+
+Report checkOnce(const FileSystem& files, const std::string& path, const CheckOptions& options) {
   CheckContext context(files, path, options);
   // A rule that fails has proved nothing: the report says so and is never taken for a clean one.
   const auto failed = [&](const char* what) {
@@ -39,6 +41,29 @@ Report checkDatabase(const FileSystem& files, const std::string& path, const Che
     failed("unknown exception");
   }
   return std::move(context.report);
+}
+
+}  // namespace
+
+Report checkDatabase(const FileSystem& files, const std::string& path, const CheckOptions& options) {
+  // A writer may replace the database under the check: then the new state is checked instead.
+  constexpr int kAttempts = 5;
+  const std::string area_path = joinPath(path, std::string(kAreaFileName));
+  const auto area = [&]() -> Result<std::vector<std::byte>> {
+    try {
+      return readWholeFile(files, area_path, kMaximumAreaBytes);
+    } catch (const std::exception& exception) {
+      return internalError(area_path, exception.what());
+    }
+  };
+  for (int attempt = 1;; ++attempt) {
+    const Result<std::vector<std::byte>> before = area();
+    Report report = checkOnce(files, path, options);
+    if (attempt == kAttempts || !before.ok() || (report.complete && report.count(Severity::kError) == 0))
+      return report;
+    const Result<std::vector<std::byte>> after = area();
+    if (!after.ok() || after.value() == before.value()) return report;
+  }
 }
 
 }  // namespace deltaz

@@ -64,6 +64,7 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
   OGRSpatialReference reference;
   reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   bool failed = reference.importFromWkt(header.crs_wkt.c_str()) != OGRERR_NONE;
+  if (header.coordinate_epoch) reference.SetCoordinateEpoch(*header.coordinate_epoch);
   failed = failed || dataset->SetSpatialRef(&reference) != CE_None;
   failed = failed || dataset->SetGeoTransform(transform.data()) != CE_None;
   failed = failed ||
@@ -151,6 +152,8 @@ Status exportTerrain(const Database& database, const std::string& target, const 
   const FileSystem& files = localFileSystem();
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(target));
   if (type == PathType::kDirectory) return usageError(target, "the target is a folder", {}, "Name a file");
+  if (type == PathType::kOther)
+    return usageError(target, "the target is not a regular file", {}, "Choose another name");
   if (type != PathType::kAbsent && !options.overwrite) {
     return usageError(target, "the target exists", {}, "Choose another name or give --overwrite");
   }
@@ -167,12 +170,16 @@ Status exportTerrain(const Database& database, const std::string& target, const 
       const GdalSession session;
       written = writeRaster(grid, options.level, temporary, target, session);
     }
+    if (written.ok()) written = files.syncFile(temporary);
     if (written.ok()) {
       written =
           options.overwrite ? files.rename(temporary, target) : files.renameNoReplace(temporary, target);
     }
-    if (!written.ok()) (void)files.removeFile(temporary);
-    return written;
+    if (!written.ok()) {
+      (void)files.removeFile(temporary);
+      return written;
+    }
+    return files.syncDirectory(parentPath(target));
   } catch (const std::exception& exception) {
     (void)files.removeFile(temporary);
     return internalError(target, exception.what());

@@ -52,6 +52,8 @@ Result<GDALDatasetUniquePtr> openRaster(const std::string& path, const GdalSessi
       0) {
     return accessError(path, "cannot open the source", "there is no such file");
   }
+  if (!VSI_ISDIR(status.st_mode) && !VSI_ISREG(status.st_mode))
+    return refused(path, "the source is not a regular file", {}, "Copy it into one");
   if (VSI_ISDIR(status.st_mode))
     return refused(path, "a folder is not an elevation source", {}, "Name the file in it");
   if (status.st_size == 0) return refused(path, "the source is empty", "the file has no bytes");
@@ -71,10 +73,9 @@ Result<GDALDatasetUniquePtr> openRaster(const std::string& path, const GdalSessi
   return dataset;
 }
 
-Result<Hash128> hashOfFile(const std::string& path) {
+Status addFile(const std::string& path, StreamingHash& hash) {
   VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
   if (file == nullptr) return accessError(path, "cannot read the source");
-  StreamingHash hash;
   std::vector<std::byte> buffer(1 << 20);
   for (;;) {
     const std::size_t count = VSIFReadL(buffer.data(), 1, buffer.size(), file);
@@ -82,6 +83,21 @@ Result<Hash128> hashOfFile(const std::string& path) {
     if (count < buffer.size()) break;
   }
   VSIFCloseL(file);
+  return Success{};
+}
+
+// Hash of the source's bytes; of a virtual raster those of its members too, in GDAL's order.
+Result<Hash128> hashOfContent(GDALDataset& dataset, const std::string& path) {
+  StreamingHash hash;
+  DELTAZ_TRY(addFile(path, hash));
+  if (EQUAL(dataset.GetDriverName(), "VRT")) {
+    const CPLStringList members(dataset.GetFileList());
+    for (int i = 0; i < members.size(); ++i) {
+      VSIStatBufL status;
+      const bool is_file = VSIStatL(members[i], &status) == 0 && VSI_ISREG(status.st_mode);
+      if (is_file && path != members[i]) DELTAZ_TRY(addFile(members[i], hash));
+    }
+  }
   return hash.digest();
 }
 
@@ -108,6 +124,14 @@ constexpr std::array<UnitName, 16> kUnits = {{{"", kMetre},
                                               {"us survey foot", kSurveyFoot},
                                               {"foot_us", kSurveyFoot},
                                               {"sft", kSurveyFoot}}};
+
+// The unit of elevations that do not name their own: that of the vertical reference system, if there is one.
+std::string unitOfVerticalSystem(const OGRSpatialReference& reference) {
+  if (!reference.IsCompound()) return {};
+  const char* name = nullptr;
+  (void)reference.GetTargetLinearUnits("VERT_CS", &name);
+  return name == nullptr ? "" : name;
+}
 
 Result<Rational> quantumOf(const std::string& path, const std::string& unit) {
   std::string lower = unit;
@@ -149,6 +173,8 @@ Status describeReferenceSystem(const OGRSpatialReference& stated, const std::str
   stated.exportToWkt(&wkt, options.data());
   header.crs_wkt = wkt == nullptr ? "" : wkt;
   CPLFree(wkt);
+  // WKT has no room for the epoch of coordinates in a dynamic datum.
+  if (stated.GetCoordinateEpoch() > 0) header.coordinate_epoch = stated.GetCoordinateEpoch();
   return Success{};
 }
 
@@ -168,6 +194,10 @@ Status checkBand(GDALDataset& dataset, const std::string& path) {
   if (band.GetScale(nullptr) != 1.0 || band.GetOffset(nullptr) != 0.0) {
     return refused(path, "the source scales its elevations", "this version reads plain integers");
   }
+  if (band.GetColorTable() != nullptr) {
+    return refused(path, "the source has a colour table",
+                   "its values are classes or colours, not elevations");
+  }
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0) {
     return refused(path, "the source marks its voids with a mask of its own",
                    "this version reads a nodata value", "Convert it with a nodata value first");
@@ -185,6 +215,10 @@ Status placeGrid(const SourceDescription& source, const std::string& path, GridH
   }
   if (source.columns < 2 || source.rows < 2) return refused(path, "the source has fewer than 2 x 2 posts");
   const double spacing_y = std::abs(transform[5]);
+  if (transform[1] < kLeastSpacingDegrees || spacing_y < kLeastSpacingDegrees) {
+    return refused(path, "the source's posts are less than 0.1 mm apart",
+                   "its georeferencing is hardly meant so");
+  }
   double west = transform[0] + 0.5 * transform[1];
   const double first_row = transform[3] + 0.5 * transform[5];
   const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
@@ -267,7 +301,7 @@ Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const 
   int has_nodata = 0;
   const double nodata = band.GetNoDataValue(&has_nodata);
   if (has_nodata != 0 && std::isfinite(nodata)) source.nodata = nodata;
-  DELTAZ_TRY_ASSIGN(source.content, hashOfFile(path));
+  DELTAZ_TRY_ASSIGN(source.content, hashOfContent(dataset, path));
 
   OGRSpatialReference reference;
   if (const OGRSpatialReference* stated = dataset.GetSpatialRef(); stated != nullptr) {
@@ -286,7 +320,8 @@ Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const 
     grid.header.vertical_datum = dted;
   }
   grid.header.unit = "metre";
-  DELTAZ_TRY_ASSIGN(grid.header.quantum, quantumOf(path, source.unit));
+  DELTAZ_TRY_ASSIGN(grid.header.quantum,
+                    quantumOf(path, source.unit.empty() ? unitOfVerticalSystem(reference) : source.unit));
   DELTAZ_TRY(placeGrid(source, path, grid.header));
   grid.header.sources.push_back(source);
   DELTAZ_TRY(readPosts(dataset, path, session, grid));

@@ -1,6 +1,7 @@
 #include "libdb/source/gdal_session.h"
 
 #include <algorithm>
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal.h>
 #include <mutex>
@@ -8,6 +9,8 @@
 namespace deltaz {
 
 namespace {
+
+constexpr const char* kVerifyDted = "DTED_VERIFY_CHECKSUM";
 
 void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* message) {
   if (severity >= CE_Failure) *static_cast<std::string*>(CPLGetErrorHandlerUserData()) = message;
@@ -19,14 +22,16 @@ GdalSession::GdalSession() {
   static std::once_flag registered;
   std::call_once(registered, GDALAllRegister);
   CPLPushErrorHandlerEx(collect, &failure_);
+  CPLSetThreadLocalConfigOption(kVerifyDted, "YES");
 }
 
 GdalSession::~GdalSession() {
+  CPLSetThreadLocalConfigOption(kVerifyDted, nullptr);
   CPLPopErrorHandler();
 }
 
 std::string GdalSession::lastFailure() const {
-  std::string text = failure_.empty() ? "no reason given" : failure_;
+  std::string text = failure_;
   // An error is one line.
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');

@@ -1,4 +1,5 @@
-// GDAL's edge. While a session lives, GDAL's messages of this thread are collected instead of printed.
+// GDAL's edge. While a session lives, GDAL's messages of this thread are collected instead of printed, and
+// GDAL verifies what it can: the checksums of DTED records, which it ignores otherwise.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ class GdalSession {
   GdalSession(const GdalSession&) = delete;
   GdalSession& operator=(const GdalSession&) = delete;
 
-  // The last failure GDAL reported in this session, or "no reason given".
+  // The last failure GDAL reported in this session, empty if it gave no reason.
   std::string lastFailure() const;
   bool hasFailed() const { return !failure_.empty(); }
 

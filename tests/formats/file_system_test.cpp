@@ -50,6 +50,8 @@ void keepsThePromises(const FileSystem& files, const std::string& folder) {
   EXPECT_EQ(files.typeOf(sub).value(), PathType::kDirectory);
   EXPECT_TRUE(files.renameNoReplace(sub, joinPath(folder, "moved")).ok());
   writeFile(files, joinPath(folder, "moved/inside"), "x");
+  EXPECT_TRUE(files.syncFile(b).ok());
+  EXPECT_FALSE(files.syncFile(a).ok());
   EXPECT_TRUE(files.syncDirectory(folder).ok());
   EXPECT_TRUE(files.removeDirectory(joinPath(folder, "moved")).ok());
   EXPECT_TRUE(files.removeFile(b).ok());

@@ -121,6 +121,11 @@ Status FaultFileSystem::removeDirectory(const std::string& path) const {
   return files_.removeDirectory(path);
 }
 
+Status FaultFileSystem::syncFile(const std::string& path) const {
+  if (plan_->fails(path)) return fault(path, "cannot write to the disk", "Input/output error");
+  return files_.syncFile(path);
+}
+
 Status FaultFileSystem::syncDirectory(const std::string& path) const {
   if (plan_->fails(path)) return fault(path, "cannot sync the folder", "Input/output error");
   return files_.syncDirectory(path);

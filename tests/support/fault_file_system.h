@@ -39,6 +39,7 @@ class FaultFileSystem final : public FileSystem {
   Status renameNoReplace(const std::string& from, const std::string& to) const override;
   Status removeFile(const std::string& path) const override;
   Status removeDirectory(const std::string& path) const override;
+  Status syncFile(const std::string& path) const override;
   Status syncDirectory(const std::string& path) const override;
   Result<std::unique_ptr<FileLock>> lock(const std::string& path) const override;
 

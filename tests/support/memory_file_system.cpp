@@ -217,6 +217,12 @@ Status MemoryFileSystem::removeDirectory(const std::string& path) const {
   return Success{};
 }
 
+Status MemoryFileSystem::syncFile(const std::string& path) const {
+  const auto type = typeOf(path);
+  if (!type.ok() || type.value() != PathType::kFile) return absent(path);
+  return Success{};
+}
+
 Status MemoryFileSystem::syncDirectory(const std::string& path) const {
   const auto type = typeOf(path);
   if (!type.ok() || type.value() != PathType::kDirectory) return absent(path);

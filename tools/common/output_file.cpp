@@ -30,6 +30,8 @@ Status checkOutput(const std::string& path, bool overwrite) {
   DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
   if (type == PathType::kDirectory)
     return usageError(path, "the target is a folder", {}, "Choose another name");
+  if (type == PathType::kOther)
+    return usageError(path, "the target is not a regular file", {}, "Choose another name");
   if (type != PathType::kAbsent && !overwrite) {
     return usageError(path, "the target exists", {}, "Choose another name or give --overwrite");
   }
@@ -46,6 +48,10 @@ Status writeOutput(const std::string& path, std::span<const std::byte> bytes, bo
   const FileSystem& files = localFileSystem();
   DELTAZ_TRY(checkOutput(path, overwrite));
   const std::string temporary = temporaryName(path);
+  // Of a process that had our number and died.
+  if (const Result<PathType> type = files.typeOf(temporary); type.ok() && type.value() == PathType::kFile) {
+    DELTAZ_TRY(files.removeFile(temporary));
+  }
   Status status = writeAndSync(temporary, bytes);
   if (status.ok())
     status = overwrite ? files.rename(temporary, path) : files.renameNoReplace(temporary, path);

@@ -1,7 +1,9 @@
 #include "tools/dbview/options.h"
 
 #include <fmt/format.h>
+#include <utility>
 
+#include "formats/file_system.h"
 #include "libdb/access/ground_query.h"
 #include "tools/common/output_file.h"
 #include "tools/common/parse.h"
@@ -21,6 +23,16 @@ Status checkOutputs(const ViewOptions& options) {
   if (!options.depth_path.empty() && !options.depth_path.ends_with(".tif") &&
       !options.depth_path.ends_with(".tiff")) {
     return usageError(options.depth_path, "depth is written as TIFF; the name must end in .tif");
+  }
+  const auto same = [](const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() &&
+           joinPath(parentPath(a), baseName(a)) == joinPath(parentPath(b), baseName(b));
+  };
+  for (const auto& [a, b] :
+       {std::pair(options.output, options.depth_path), std::pair(options.output, options.statistics_path),
+        std::pair(options.depth_path, options.statistics_path)}) {
+    if (same(a, b))
+      return usageError(a, "two results would go into one file", {}, "Give each a name of its own");
   }
   for (const std::string& path : {options.output, options.depth_path, options.statistics_path}) {
     if (!path.empty()) DELTAZ_TRY(checkOutput(path, options.common.overwrite));

@@ -100,6 +100,16 @@ TEST(Publication, what_is_not_a_database_is_never_overwritten) {
   EXPECT_FALSE(buildTerrain(files, gridOfSeed(1), kMemoryDatabasePath, {.overwrite = true}).ok());
 }
 
+TEST(Publication, an_overwrite_removes_what_dead_writers_left_and_nothing_else) {
+  MemoryFileSystem files = buildInMemory(gridOfSeed(1));
+  files.setBytes(kMemoryDatabasePath + "/terrain-000007-000.dzt", {std::byte{1}});
+  files.setBytes(kMemoryDatabasePath + "/notes.txt", {std::byte{1}});
+  ASSERT_TRUE(buildTerrain(files, gridOfSeed(2), kMemoryDatabasePath, {.overwrite = true}).ok());
+  EXPECT_EQ(files.list(kMemoryDatabasePath).value(),
+            (std::vector<std::string>{"area.json", "lock", "nodes-000008.dzn", "notes.txt",
+                                      "terrain-000008-000.dzt"}));
+}
+
 TEST(Publication, a_damaged_database_may_be_overwritten) {
   MemoryFileSystem files = buildInMemory(gridOfSeed(1));
   auto area = files.bytes(kMemoryDatabasePath + "/area.json");

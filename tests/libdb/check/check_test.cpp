@@ -219,6 +219,7 @@ class ThrowingFileSystem final : public FileSystem {
   Status renameNoReplace(const std::string&, const std::string&) const override { throw std::bad_alloc(); }
   Status removeFile(const std::string&) const override { throw std::bad_alloc(); }
   Status removeDirectory(const std::string&) const override { throw std::bad_alloc(); }
+  Status syncFile(const std::string&) const override { throw std::bad_alloc(); }
   Status syncDirectory(const std::string&) const override { throw std::bad_alloc(); }
   Result<std::unique_ptr<FileLock>> lock(const std::string&) const override { throw std::bad_alloc(); }
 };

@@ -41,6 +41,17 @@ TEST(ExportTerrain, the_exported_file_reads_as_the_same_grid) {
   }
 }
 
+TEST(ExportTerrain, the_coordinate_epoch_is_kept) {
+  RawGrid grid = syntheticGrid();
+  grid.header.coordinate_epoch = 2021.3;
+  const MemoryFileSystem files = buildInMemory(grid);
+  const TemporaryDirectory folder;
+  ASSERT_TRUE(exportTerrain(openSample(files), folder.file("dem.tif"), {}).ok());
+  const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back.value().header.coordinate_epoch, 2021.3);
+}
+
 TEST(ExportTerrain, a_coarser_level_keeps_its_posts_in_place) {
   const RawGrid grid = syntheticGrid();
   const MemoryFileSystem files = buildInMemory(grid, {.leaf_cells = 16});

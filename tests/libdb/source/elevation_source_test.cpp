@@ -18,7 +18,8 @@ struct RasterOptions {
   std::array<double, 6> transform = {-80.5 / 3600, 1.0 / 3600, 0, 43.5 / 3600, 0, -1.0 / 3600};
   std::string crs = "EPSG:4326";
   bool georeferenced = true;
-  std::function<void(GDALDataset&)> change;
+  std::function<void(GDALDataset&)> prepare;  // before the posts are written
+  std::function<void(GDALDataset&)> change;   // after
 };
 
 // A GeoTIFF of 5 x 4 posts, height 10 * row from the north + column.
@@ -36,6 +37,7 @@ std::string makeRaster(const TemporaryDirectory& folder, const RasterOptions& op
     reference.SetFromUserInput(options.crs.c_str());
     dataset->SetSpatialRef(&reference);
   }
+  if (options.prepare) options.prepare(*dataset);
   std::vector<std::int32_t> heights;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 5; ++column) heights.push_back(10 * row + column);
@@ -105,6 +107,44 @@ TEST(ElevationSource, feet_are_an_exact_quantum) {
   EXPECT_EQ(grid.value().header.quantum, (Rational{381, 1250}));
 }
 
+// GDAL tells the unit of a vertical system only where the band names none.
+TEST(ElevationSource, the_unit_of_the_vertical_system_counts) {
+  const TemporaryDirectory folder;
+  RasterOptions options;
+  options.crs.clear();
+  const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {.crs = "EPSG:4269+6360"});
+  ASSERT_TRUE(grid.ok()) << grid.error().message();
+  EXPECT_EQ(grid.value().header.quantum, (Rational{1200, 3937}));
+}
+
+// GDAL looks at the checksums of DTED records only when asked.
+TEST(ElevationSource, a_damaged_dted_record_is_refused) {
+  const TemporaryDirectory folder;
+  const std::string path = folder.file("n43.dt0");
+  GDALAllRegister();
+  {
+    GDALDatasetUniquePtr memory(
+        GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 121, 121, 1, GDT_Int16, nullptr));
+    std::array<double, 6> transform = {-80 - 1.0 / 240, 1.0 / 120, 0, 44 + 1.0 / 240, 0, -1.0 / 120};
+    memory->SetGeoTransform(transform.data());
+    OGRSpatialReference reference;
+    reference.SetFromUserInput("EPSG:4326");
+    memory->SetSpatialRef(&reference);
+    memory->GetRasterBand(1)->Fill(270);
+    GDALDatasetUniquePtr dted(GetGDALDriverManager()->GetDriverByName("DTED")->CreateCopy(
+        path.c_str(), memory.get(), FALSE, nullptr, nullptr, nullptr));
+    ASSERT_TRUE(dted);
+  }
+  ASSERT_TRUE(readElevationSource(path, {}).ok());
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(3428 + 8 + 100);
+  file.put(2);
+  file.close();
+  const Result<RawGrid> damaged = readElevationSource(path, {});
+  ASSERT_FALSE(damaged.ok());
+  EXPECT_EQ(damaged.error().kind, ErrorKind::kInvalid);
+}
+
 TEST(ElevationSource, other_ellipsoids_are_kept) {
   const TemporaryDirectory folder;
   RasterOptions options;
@@ -127,6 +167,18 @@ TEST(ElevationSource, what_is_not_read_is_refused_with_the_reason) {
   options = {};
   options.bands = 3;
   EXPECT_NE(refusal(options).message().find("3 bands"), std::string::npos);
+  options = {};
+  options.type = GDT_Byte;
+  options.prepare = [](GDALDataset& dataset) {
+    GDALColorTable colors;
+    const GDALColorEntry green = {0, 255, 0, 255};
+    colors.SetColorEntry(1, &green);
+    dataset.GetRasterBand(1)->SetColorTable(&colors);
+  };
+  EXPECT_NE(refusal(options).message().find("colour table"), std::string::npos);
+  options = {};
+  options.transform[1] = 1e-10;
+  EXPECT_NE(refusal(options).message().find("apart"), std::string::npos);
   options = {};
   options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetScale(0.1); };
   EXPECT_NE(refusal(options).message().find("scales"), std::string::npos);
