@@ -4,6 +4,7 @@
 #include <oneapi/tbb/task_arena.h>
 #include <utility>
 
+#include "libdb/access/database.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/report_detail.h"
 
@@ -23,7 +24,9 @@ void runRules(CheckContext& context) {
 
 namespace {
 
-Report checkOnce(const FileSystem& files, const std::string& path, const CheckOptions& options) {
+// `generation` becomes that of the state that was checked, 0 if area.json could not be read.
+Report checkOnce(const FileSystem& files, const std::string& path, const CheckOptions& options,
+                 std::uint64_t& generation) {
   CheckContext context(files, path, options);
   // A rule that fails has proved nothing: the report says so and is never taken for a clean one.
   const auto failed = [&](const char* what) {
@@ -40,7 +43,18 @@ Report checkOnce(const FileSystem& files, const std::string& path, const CheckOp
   } catch (...) {
     failed("unknown exception");
   }
+  generation = context.listed.empty() ? 0 : context.area.generation;
   return std::move(context.report);
+}
+
+// The generation that stands in area.json now; 0 if that cannot be told.
+std::uint64_t currentGeneration(const FileSystem& files, const std::string& path) {
+  try {
+    const Result<Database> database = Database::open(files, path);
+    return database.ok() ? database.value().area().generation : 0;
+  } catch (const std::exception&) {
+    return 0;
+  }
 }
 
 }  // namespace
@@ -48,21 +62,13 @@ Report checkOnce(const FileSystem& files, const std::string& path, const CheckOp
 Report checkDatabase(const FileSystem& files, const std::string& path, const CheckOptions& options) {
   // A writer may replace the database under the check: then the new state is checked instead.
   constexpr int kAttempts = 5;
-  const std::string area_path = joinPath(path, std::string(kAreaFileName));
-  const auto area = [&]() -> Result<std::vector<std::byte>> {
-    try {
-      return readWholeFile(files, area_path, kMaximumAreaBytes);
-    } catch (const std::exception& exception) {
-      return internalError(area_path, exception.what());
-    }
-  };
   for (int attempt = 1;; ++attempt) {
-    const Result<std::vector<std::byte>> before = area();
-    Report report = checkOnce(files, path, options);
-    if (attempt == kAttempts || !before.ok() || (report.complete && report.count(Severity::kError) == 0))
+    std::uint64_t generation = 0;
+    Report report = checkOnce(files, path, options, generation);
+    const bool clean = report.complete && report.count(Severity::kError) == 0;
+    if (clean || attempt == kAttempts || generation == 0) return report;
+    if (const std::uint64_t now = currentGeneration(files, path); now == 0 || now == generation)
       return report;
-    const Result<std::vector<std::byte>> after = area();
-    if (!after.ok() || after.value() == before.value()) return report;
   }
 }
 
