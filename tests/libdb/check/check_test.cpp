@@ -4,6 +4,7 @@
 #include <new>
 #include <string>
 
+#include "libdb/access/database.h"
 #include "tests/support/container_surgery.h"
 #include "tests/support/database_editor.h"
 #include "tests/support/fault_file_system.h"
@@ -229,6 +230,66 @@ TEST(CheckDatabase, failing_rule_is_an_internal_error_and_never_valid) {
   ASSERT_TRUE(report.fatal.has_value());
   EXPECT_EQ(report.fatal->kind, ErrorKind::kInternal);
   EXPECT_FALSE(report.complete);
+}
+
+// Replaces the database by another once its area.json has been read, when the first of its files is looked
+// for.
+class ReplacingFileSystem final : public FileSystem {
+ public:
+  explicit ReplacingFileSystem(const MemoryFileSystem& files) : files_(files) {}
+  Result<PathType> typeOf(const std::string& path) const override {
+    if (!replaced_ && path.ends_with("nodes-000001.dzn")) {
+      replaced_ = true;
+      SyntheticGridOptions other;
+      other.seed = 2;
+      BuildOptions options;
+      options.overwrite = true;
+      EXPECT_TRUE(buildTerrain(files_, syntheticGrid(other), kPath, options).ok());
+    }
+    return files_.typeOf(path);
+  }
+  Result<std::unique_ptr<ReadableFile>> open(const std::string& path) const override {
+    return files_.open(path);
+  }
+  Result<std::unique_ptr<WritableFile>> create(const std::string& path) const override {
+    return files_.create(path);
+  }
+  Result<std::vector<std::string>> list(const std::string& path) const override { return files_.list(path); }
+  Status makeDirectory(const std::string& path) const override { return files_.makeDirectory(path); }
+  Status rename(const std::string& from, const std::string& to) const override {
+    return files_.rename(from, to);
+  }
+  Status renameNoReplace(const std::string& from, const std::string& to) const override {
+    return files_.renameNoReplace(from, to);
+  }
+  Status removeFile(const std::string& path) const override { return files_.removeFile(path); }
+  Status removeDirectory(const std::string& path) const override { return files_.removeDirectory(path); }
+  Status syncFile(const std::string& path) const override { return files_.syncFile(path); }
+  Status syncDirectory(const std::string& path) const override { return files_.syncDirectory(path); }
+  Result<std::unique_ptr<FileLock>> lock(const std::string& path) const override { return files_.lock(path); }
+  bool replaced() const { return replaced_; }
+
+ private:
+  const MemoryFileSystem& files_;
+  mutable bool replaced_ = false;
+};
+
+TEST(CheckDatabase, a_database_replaced_under_the_check_is_checked_in_its_new_state) {
+  const MemoryFileSystem files = buildInMemory(syntheticGrid());
+  const ReplacingFileSystem replacing(files);
+  const Report report = check(replacing);
+  EXPECT_TRUE(replacing.replaced());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.count(Severity::kError), 0u);
+}
+
+TEST(CheckDatabase, a_database_replaced_under_a_reader_opens_in_its_new_state) {
+  const MemoryFileSystem files = buildInMemory(syntheticGrid());
+  const ReplacingFileSystem replacing(files);
+  const Result<Database> database = Database::open(replacing, kPath);
+  ASSERT_TRUE(database.ok()) << database.error().message();
+  EXPECT_TRUE(replacing.replaced());
+  EXPECT_EQ(database.value().area().generation, 2u);
 }
 
 }  // namespace
