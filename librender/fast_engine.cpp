@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <vector>
 
 #include "librender/objects/terrain_object_processor.h"
@@ -11,6 +10,7 @@
 #include "librender/raster/pretiler.h"
 #include "librender/raster/resolver.h"
 #include "librender/raster/tiler.h"
+#include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/scheduler.h"
 #include "librender/scene/stopwatch.h"
@@ -92,10 +92,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
 Result<Picture> FastEngine::render(const Database& database, const RenderOptions& options,
                                    FrameStatistics& statistics) const {
   statistics = {};
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  std::optional<Result<Picture>> result;
-  arena.execute([&] { result.emplace(renderInArena(database, options, statistics)); });
-  return std::move(*result);
+  return drawOnThreads(options.threads, [&] { return renderInArena(database, options, statistics); });
 }
 
 }  // namespace deltaz

@@ -8,10 +8,10 @@
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <vector>
 
 #include "librender/objects/terrain_object_processor.h"
+#include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/stopwatch.h"
 #include "librender/scene/view_volume.h"
@@ -261,10 +261,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
 Result<Picture> ReferenceEngine::render(const Database& database, const RenderOptions& options,
                                         FrameStatistics& statistics) const {
   statistics = {};
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  std::optional<Result<Picture>> result;
-  arena.execute([&] { result.emplace(renderInArena(database, options, statistics)); });
-  return std::move(*result);
+  return drawOnThreads(options.threads, [&] { return renderInArena(database, options, statistics); });
 }
 
 }  // namespace deltaz
