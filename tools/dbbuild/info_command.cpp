@@ -45,6 +45,7 @@ Json gridJson(const GridHeader& grid) {
   json["kind"] = grid.kind;
   json["horizontal_datum"] = grid.horizontal_datum;
   json["vertical_datum"] = grid.vertical_datum;
+  json["coordinate_epoch"] = grid.coordinate_epoch ? finiteOrNull(*grid.coordinate_epoch) : Json(nullptr);
   json["semi_major_axis"] = grid.ellipsoid.semi_major_axis;
   json["inverse_flattening"] = grid.ellipsoid.inverse_flattening;
   json["crs_wkt"] = grid.crs_wkt;
