@@ -1,5 +1,6 @@
 #include "formats/area.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
@@ -24,6 +25,9 @@ constexpr std::int64_t kMaximumPostIndex = std::int64_t{1} << 40;
 constexpr std::int64_t kMaximumPostCount = std::int64_t{1} << 31;
 constexpr int kMaximumLevels = 32;
 
+constexpr std::array<std::string_view, 3> kRoleNames = {"nodes", "terrain", "patches"};
+constexpr std::size_t kMaximumSentinels = 64;
+
 std::span<const std::byte> asBytes(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
@@ -36,12 +40,29 @@ Json toJson(const Rational& value) {
 
 Json toJson(const GridAxis& axis) {
   Json json;
-  json["spacing_degrees"] = axis.spacing_degrees;
-  json["exact_spacing_arcseconds"] = axis.exact_spacing ? toJson(*axis.exact_spacing) : Json(nullptr);
+  json["spacing"] = axis.spacing;
+  json["exact_spacing"] = axis.exact_spacing ? toJson(*axis.exact_spacing) : Json(nullptr);
   json["phase"] = axis.phase;
   json["first"] = axis.first;
   json["count"] = axis.count;
   return json;
+}
+
+// A value that may be NaN, which JSON has no number for.
+Json sentinelToJson(double value) {
+  return std::isnan(value) ? Json("nan") : Json(value);
+}
+
+Json toJson(const PatchPlacement& patches) {
+  return {{"degree", patches.degree},   {"cells", patches.cells},     {"first_x", patches.first_x},
+          {"first_y", patches.first_y}, {"columns", patches.columns}, {"rows", patches.rows},
+          {"error", patches.error}};
+}
+
+Json toJson(const Resampling& resampling) {
+  return {{"method", resampling.method},
+          {"largest_error", resampling.largest_error},
+          {"rms_error", resampling.rms_error}};
 }
 
 Json toJson(const SourceDescription& source) {
@@ -52,8 +73,11 @@ Json toJson(const SourceDescription& source) {
   json["geotransform"] = source.geotransform;
   json["registration"] = source.point_registered ? "point" : "area";
   json["data_type"] = source.data_type;
-  json["nodata"] = source.nodata ? Json(*source.nodata) : Json(nullptr);
+  json["nodata"] = source.nodata ? sentinelToJson(*source.nodata) : Json(nullptr);
   json["unit"] = source.unit;
+  json["band"] = source.band;
+  json["scale"] = source.scale;
+  json["offset"] = source.offset;
   json["columns"] = source.columns;
   json["rows"] = source.rows;
   return json;
@@ -70,8 +94,13 @@ Json toJson(const GridHeader& grid) {
                        {"inverse_flattening", grid.ellipsoid.inverse_flattening}};
   json["unit"] = grid.unit;
   json["quantum"] = toJson(grid.quantum);
-  json["longitude"] = toJson(grid.longitude);
-  json["latitude"] = toJson(grid.latitude);
+  json["x_axis"] = toJson(grid.x_axis);
+  json["y_axis"] = toJson(grid.y_axis);
+  json["patches"] = grid.patches ? toJson(*grid.patches) : Json(nullptr);
+  json["sentinels"] = Json::array();
+  for (const double sentinel : grid.sentinels) json["sentinels"].push_back(sentinelToJson(sentinel));
+  json["height_error"] = grid.height_error;
+  json["resampling"] = grid.resampling ? toJson(*grid.resampling) : Json(nullptr);
   json["leaf_cells"] = grid.leaf_cells;
   json["levels"] = grid.level_count;
   json["normal_exponent"] = grid.normal_exponent;
@@ -83,7 +112,7 @@ Json toJson(const GridHeader& grid) {
 
 Json toJson(const FileReference& file) {
   Json json;
-  json["role"] = file.role == FileRole::kNodes ? "nodes" : "terrain";
+  json["role"] = fileRoleName(file.role);
   json["segment"] = file.segment;
   json["name"] = file.name;
   json["length"] = file.length;
@@ -159,6 +188,11 @@ class Members {
     const std::int64_t most = std::int64_t{1} << 53;
     return {integerOf(value[0], name, 1, most), integerOf(value[1], name, 1, most)};
   }
+  // NaN is spelled as text.
+  double sentinelOf(const Json& value, const char* name) {
+    if (value.is_string() && value.get<std::string>() == "nan") return std::nan("");
+    return numberOf(value, name, -1e308, 1e308);
+  }
   Members object(const char* name) {
     static const Json kNothing;
     const Json* value = find(name);
@@ -174,14 +208,14 @@ class Members {
   std::string& fault_;
 };
 
-GridAxis readAxis(Members members, double full_circle) {
+GridAxis readAxis(Members members, double least_spacing, double largest_spacing, const AxisOrigin& origin) {
   GridAxis axis;
-  axis.spacing_degrees = members.number("spacing_degrees", kLeastSpacingDegrees, full_circle);
-  if (const Json* exact = members.find("exact_spacing_arcseconds"); exact != nullptr && !exact->is_null()) {
-    axis.exact_spacing = members.rationalOf(*exact, "exact_spacing_arcseconds");
-    const double degrees = axis.exact_spacing->value() / 3600.0;
-    if (!(std::abs(degrees - axis.spacing_degrees) <= 1e-9 * degrees)) {
-      members.fail("exact_spacing_arcseconds", "does not agree with spacing_degrees");
+  axis.spacing = members.number("spacing", least_spacing, largest_spacing);
+  if (const Json* exact = members.find("exact_spacing"); exact != nullptr && !exact->is_null()) {
+    axis.exact_spacing = members.rationalOf(*exact, "exact_spacing");
+    const double spacing = axis.exact_spacing->value() / origin.exact_per_unit;
+    if (!(std::abs(spacing - axis.spacing) <= 1e-9 * spacing)) {
+      members.fail("exact_spacing", "does not agree with spacing");
     }
   }
   axis.phase = members.number("phase", 0, std::nextafter(1.0, 0.0));
@@ -206,19 +240,49 @@ SourceDescription readSource(const Json& json, const std::string& path, std::str
   source.point_registered = registration == "point";
   source.data_type = members.text("data_type");
   if (const Json* nodata = members.find("nodata"); nodata != nullptr && !nodata->is_null()) {
-    source.nodata = members.numberOf(*nodata, "nodata", -1e308, 1e308);
+    source.nodata = members.sentinelOf(*nodata, "nodata");
   }
   source.unit = members.text("unit");
   source.columns = members.integer("columns", 1, kMaximumPostCount);
   source.rows = members.integer("rows", 1, kMaximumPostCount);
+  source.band = static_cast<int>(members.integer("band", 1, 1 << 16));
+  source.scale = members.number("scale", -1e12, 1e12);
+  if (source.scale == 0) members.fail("scale", "is zero");
+  source.offset = members.number("offset", -1e12, 1e12);
   return source;
+}
+
+PatchPlacement readPatches(Members members, const GridHeader& grid) {
+  PatchPlacement patches;
+  patches.degree = static_cast<int>(members.integer("degree", kPatchDegree, kPatchDegree));
+  patches.cells = members.integer("cells", kPatchDegree, std::int64_t{1} << 40);
+  if (!std::has_single_bit(static_cast<std::uint64_t>(patches.cells)))
+    members.fail("cells", "is not a power of two");
+  patches.first_x = members.integer("first_x", -kMaximumPostIndex, kMaximumPostIndex);
+  patches.first_y = members.integer("first_y", -kMaximumPostIndex, kMaximumPostIndex);
+  patches.columns = members.integer("columns", 1, kMaximumPatches);
+  patches.rows = members.integer("rows", 1, kMaximumPatches / patches.columns);
+  patches.error = members.number("error", 0, 1e6);
+  // Every cell of the grid lies in a patch.
+  const auto covers = [&](const GridAxis& axis, std::int64_t first, std::int64_t count) {
+    const double begin = static_cast<double>(first) * static_cast<double>(patches.cells);
+    const double end = static_cast<double>(first + count) * static_cast<double>(patches.cells);
+    return begin <= static_cast<double>(axis.first) &&
+           end >= static_cast<double>(axis.first + axis.count - 1);
+  };
+  if (!covers(grid.x_axis, patches.first_x, patches.columns) ||
+      !covers(grid.y_axis, patches.first_y, patches.rows))
+    members.fail("", "do not cover the grid");
+  return patches;
 }
 
 GridHeader readGrid(const Json& json, const std::string& path, std::string& fault) {
   Members members(json, path, fault);
   GridHeader grid;
   grid.kind = members.text("kind");
-  if (grid.kind != "geodetic") members.fail("kind", "is not geodetic");
+  if (grid.kind != "geodetic" && grid.kind != "projected")
+    members.fail("kind", "is neither geodetic nor projected");
+  const bool geodetic = grid.kind == "geodetic";
   grid.crs_wkt = members.text("crs");
   grid.horizontal_datum = members.text("horizontal_datum");
   grid.vertical_datum = members.text("vertical_datum");
@@ -235,8 +299,27 @@ GridHeader readGrid(const Json& json, const std::string& path, std::string& faul
   if (grid.unit != "metre") members.fail("unit", "is not metre");
   if (const Json* quantum = members.find("quantum"); quantum != nullptr)
     grid.quantum = members.rationalOf(*quantum, "quantum");
-  grid.longitude = readAxis(members.object("longitude"), 360);
-  grid.latitude = readAxis(members.object("latitude"), 180);
+  if (geodetic) {
+    grid.x_axis = readAxis(members.object("x_axis"), kLeastSpacingDegrees, 360, kLongitudeOrigin);
+    grid.y_axis = readAxis(members.object("y_axis"), kLeastSpacingDegrees, 180, kLatitudeOrigin);
+  } else {
+    grid.x_axis = readAxis(members.object("x_axis"), kLeastSpacingProjected, 1e9, kProjectedOrigin);
+    grid.y_axis = readAxis(members.object("y_axis"), kLeastSpacingProjected, 1e9, kProjectedOrigin);
+  }
+  if (const Json* patches = members.find("patches"); patches != nullptr && patches->is_null() != geodetic) {
+    members.fail("patches", geodetic ? "are not of a geodetic grid" : "are missing");
+  } else if (!geodetic) {
+    grid.patches = readPatches(members.object("patches"), grid);
+  }
+  const Json& sentinels = members.array("sentinels", 0, kMaximumSentinels);
+  for (const Json& sentinel : sentinels) grid.sentinels.push_back(members.sentinelOf(sentinel, "sentinels"));
+  grid.height_error = members.number("height_error", 0, kMaximumHeightMetres);
+  if (const Json* resampling = members.find("resampling"); resampling != nullptr && !resampling->is_null()) {
+    Members of_resampling = members.object("resampling");
+    grid.resampling = {of_resampling.text("method"),
+                       of_resampling.number("largest_error", 0, kMaximumHeightMetres),
+                       of_resampling.number("rms_error", 0, kMaximumHeightMetres)};
+  }
   grid.leaf_cells = static_cast<int>(members.integer("leaf_cells", 8, kMaximumLeafCells));
   if (!std::has_single_bit(static_cast<unsigned>(grid.leaf_cells)))
     members.fail("leaf_cells", "is not a power of two");
@@ -255,8 +338,12 @@ FileReference readFile(const Json& json, const std::string& path, std::string& f
   Members members(json, path, fault);
   FileReference file;
   const std::string role = members.text("role");
-  if (role != "nodes" && role != "terrain") members.fail("role", "is neither nodes nor terrain");
-  file.role = role == "nodes" ? FileRole::kNodes : FileRole::kTerrain;
+  const auto known = std::find(kRoleNames.begin(), kRoleNames.end(), role);
+  if (known == kRoleNames.end()) {
+    members.fail("role", "is none of nodes, terrain, patches");
+  } else {
+    file.role = static_cast<FileRole>(known - kRoleNames.begin());
+  }
   file.segment = static_cast<std::uint32_t>(members.integer("segment", 0, 1 << 20));
   file.name = members.text("name");
   // A name leads nowhere but into the database's own folder.
@@ -314,6 +401,10 @@ AreaHeader readArea(const Json& json, std::string& fault) {
 }
 
 }  // namespace
+
+std::string_view fileRoleName(FileRole role) {
+  return kRoleNames[static_cast<std::size_t>(role)];
+}
 
 std::string serializeArea(const AreaHeader& area) {
   Json json;

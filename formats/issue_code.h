@@ -45,6 +45,7 @@ namespace deltaz {
   X(kHgtSubset, "HGT_SUBSET")                    \
   X(kHgtRing, "HGT_RING")                        \
   X(kHgtBorder, "HGT_BORDER")                    \
+  X(kHgtPatches, "HGT_PATCHES")                  \
   X(kSrcHeight, "SRC_HEIGHT")                    \
   X(kSrcVoid, "SRC_VOID")                        \
   X(kSrcExtent, "SRC_EXTENT")                    \

@@ -37,7 +37,7 @@ class DigestBytes {
 };
 
 void addAxis(DigestBytes& bytes, const GridAxis& axis) {
-  bytes.add(axis.spacing_degrees);
+  bytes.add(axis.spacing);
   bytes.add(axis.exact_spacing.has_value());
   bytes.add(axis.exact_spacing.value_or(Rational{0, 1}));
   bytes.add(axis.phase);
@@ -55,8 +55,8 @@ void addGrid(DigestBytes& bytes, const GridHeader& grid) {
   bytes.add(grid.ellipsoid.semi_major_axis);
   bytes.add(grid.ellipsoid.inverse_flattening);
   bytes.add(grid.quantum);
-  addAxis(bytes, grid.longitude);
-  addAxis(bytes, grid.latitude);
+  addAxis(bytes, grid.x_axis);
+  addAxis(bytes, grid.y_axis);
   bytes.add(grid.leaf_cells);
   bytes.add(grid.level_count);
   bytes.add(grid.normal_exponent);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "libdb/access/referenced_file.h"
+
 namespace deltaz {
 
 namespace {
@@ -37,7 +39,7 @@ Result<std::unique_ptr<ContainerReader>> openReferenced(const FileSystem& files,
     error.code = IssueCode::kIoMissingFile;
     return error;
   }
-  const ContentKind kind = reference.role == FileRole::kNodes ? ContentKind::kNodes : ContentKind::kTerrain;
+  const ContentKind kind = contentKindOf(reference.role);
   DELTAZ_TRY_ASSIGN(ContainerReader reader, ContainerReader::open(files, path, kind));
   if (reader.identity().length != reference.length || reader.identity().id != reference.id) {
     return invalidError(IssueCode::kManFileMismatch, path, "the file is not the one area.json names",
@@ -113,8 +115,7 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
   std::transform(text.begin(), text.end(), characters.begin(),
                  [](std::byte b) { return static_cast<char>(b); });
   DELTAZ_TRY_ASSIGN(database.area_, parseArea(characters, area_path));
-  for (const GridHeader& grid : database.area_.grids) database.grids_.emplace_back(grid);
-
+  std::vector<std::shared_ptr<const PatchLattice>> patches(database.area_.grids.size());
   for (const FileReference& reference : database.area_.files) {
     DELTAZ_TRY_ASSIGN(std::unique_ptr<ContainerReader> reader, openReferenced(files, path, reference));
     if (reference.role == FileRole::kNodes) {
@@ -122,10 +123,30 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
       database.nodes_ = std::move(reader);
       continue;
     }
+    if (reference.role == FileRole::kPatches) {
+      // A second lattice for one grid, or one for a grid that needs none, is a mistake of whoever wrote it.
+      if (reference.segment >= patches.size() || patches[reference.segment] != nullptr ||
+          !database.area_.grids[reference.segment].patches) {
+        return invalidError(IssueCode::kManField, area_path,
+                            fmt::format("file {} places no grid", reference.name));
+      }
+      DELTAZ_TRY_ASSIGN(patches[reference.segment],
+                        readPatchLattice(*reader, *database.area_.grids[reference.segment].patches));
+      database.patch_files_.push_back(std::move(reader));
+      continue;
+    }
     if (reference.segment != database.segments_.size()) {
       return invalidError(IssueCode::kManField, area_path, "the terrain segments are not numbered in order");
     }
     database.segments_.push_back(std::move(reader));
+  }
+  for (std::size_t grid = 0; grid < patches.size(); ++grid) {
+    const GridHeader& header = database.area_.grids[grid];
+    if (header.patches && patches[grid] == nullptr) {
+      return invalidError(IssueCode::kManField, area_path,
+                          fmt::format("no file places the posts of grid {}", grid));
+    }
+    database.grids_.emplace_back(header, patches[grid]);
   }
   if (!database.nodes_) return invalidError(IssueCode::kManField, area_path, "no node file is listed");
   const std::uint64_t pages = (std::uint64_t{database.area_.node_count} + kNodesPerPage - 1) / kNodesPerPage;
@@ -243,6 +264,7 @@ Result<TerrainTile> Database::terrain(const Node& node) const {
 std::uint64_t Database::bytesRead() const {
   std::uint64_t bytes = area_bytes_ + nodes_->bytesRead();
   for (const auto& segment : segments_) bytes += segment->bytesRead();
+  for (const auto& file : patch_files_) bytes += file->bytesRead();
   return bytes;
 }
 

@@ -76,6 +76,7 @@ class Database {
   std::vector<GridGeometry> grids_;
   std::unique_ptr<ContainerReader> nodes_;
   std::vector<std::unique_ptr<ContainerReader>> segments_;  // by segment number
+  std::vector<std::unique_ptr<ContainerReader>> patch_files_;
   struct PageCache {
     std::mutex mutex;
     std::vector<std::shared_ptr<const std::vector<NodeRecord>>> pages;

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "formats/area.h"
 #include "formats/node_file.h"
+#include "formats/patch_lattice.h"
 #include "libdb/access/earth.h"
 
 namespace deltaz {
@@ -19,20 +21,42 @@ struct PostRange {
   bool operator==(const PostRange&) const = default;
 };
 
-// Degrees of post `global` (level 0) of an axis; `origin` is -180 or -90.
-double postDegrees(const GridAxis& axis, double origin, std::int64_t global);
+// Coordinate of post `global` (level 0) of an axis: degrees, or units of the projection.
+double postCoordinate(const GridAxis& axis, const AxisOrigin& origin, std::int64_t global);
 
 // floor(a / b) and ceil(a / b) for b > 0.
 std::int64_t floorDivide(std::int64_t a, std::int64_t b);
 std::int64_t ceilDivide(std::int64_t a, std::int64_t b);
 
+// A post's place without its height: Earth-centred metres on the ellipsoid, and the ellipsoid normal there.
+struct PostPlace {
+  Vector3 foot, up;
+  Vector3 at(double height) const { return foot + up * height; }
+};
+
 class GridGeometry {
  public:
-  explicit GridGeometry(const GridHeader& grid);
+  // `patches` is what places the posts of a projected grid; without it only indices may be asked for.
+  explicit GridGeometry(const GridHeader& grid, std::shared_ptr<const PatchLattice> patches = nullptr);
 
   const GridHeader& header() const { return grid_; }
-  double longitude(std::int64_t global_column) const;  // degrees, level-0 index
+  bool isGeodetic() const { return grid_.kind != "projected"; }
+  const std::shared_ptr<const PatchLattice>& patches() const { return patches_; }
+
+  // Coordinates of a level-0 post along its axis: degrees, or units of the projection.
+  double xCoordinate(std::int64_t global_column) const;
+  double yCoordinate(std::int64_t global_row) const;
+  // Degrees. Geodetic grids only: there a column has one longitude and a row one latitude.
+  double longitude(std::int64_t global_column) const;
   double latitude(std::int64_t global_row) const;
+
+  // For grids of either kind. On a projected grid the same bits at every level and from either side of a
+  // node's border.
+  PostPlace placeAt(std::int64_t global_column, std::int64_t global_row) const;
+  // Latitude and longitude in degrees of a level-0 post, height 0.
+  GeodeticPoint geodeticAt(std::int64_t global_column, std::int64_t global_row) const;
+  // Level-`level` posts of both ranges, row by row.
+  std::vector<PostPlace> postPlaces(int level, PostRange columns, PostRange rows) const;
 
   // Posts of level `level` inside the area, as indices of that level.
   PostRange columnsAt(int level) const;
@@ -43,7 +67,7 @@ class GridGeometry {
   // Posts of one node of a level (its border posts included, the ring not), clipped to the area.
   PostRange nodePosts(PostRange level_posts, std::int32_t node_index) const;
 
-  // Row and column constants of level-`level` posts [range.begin, range.end).
+  // Row and column constants of level-`level` posts [range.begin, range.end). Geodetic grids only.
   std::vector<RowConstants> rowConstantsOf(int level, PostRange range) const;
   std::vector<ColumnConstants> columnConstantsOf(int level, PostRange range) const;
 
@@ -52,6 +76,7 @@ class GridGeometry {
  private:
   GridHeader grid_;
   double quantum_;
+  std::shared_ptr<const PatchLattice> patches_;
 };
 
 }  // namespace deltaz

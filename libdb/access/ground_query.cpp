@@ -13,8 +13,8 @@ struct CellPosition {
   double fraction = 0;
 };
 
-std::optional<CellPosition> locate(const GridAxis& axis, double origin, double degrees) {
-  const double steps = (degrees - origin) / axis.spacing_degrees - axis.phase;
+std::optional<CellPosition> locate(const GridAxis& axis, const AxisOrigin& origin, double degrees) {
+  const double steps = (degrees - origin.coordinate) / axis.spacing - axis.phase;
   // A position written with fifteen digits may miss the outermost post by a rounding error.
   constexpr double kRoundingPosts = 1e-6;
   const double first = static_cast<double>(axis.first),
@@ -82,10 +82,10 @@ Result<std::optional<double>> groundHeight(const Database& database, double lati
   for (const Node& cluster : clusters) {
     const GridGeometry& geometry = database.grid(cluster.record.grid);
     const GridHeader& grid = geometry.header();
-    const auto y = locate(grid.latitude, -90.0, latitude);
+    const auto y = locate(grid.y_axis, kLatitudeOrigin, latitude);
     if (!y) continue;
     for (const double turn : {0.0, 360.0, -360.0}) {
-      const auto x = locate(grid.longitude, -180.0, longitude + turn);
+      const auto x = locate(grid.x_axis, kLongitudeOrigin, longitude + turn);
       if (!x) continue;
       DELTAZ_TRY_ASSIGN(const std::optional<Node> leaf,
                         leafAt(database, cluster, floorDivide(x->post, grid.leaf_cells),

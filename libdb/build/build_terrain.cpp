@@ -157,8 +157,8 @@ class TerrainBuild {
         static_cast<std::uint16_t>(tile.first_column - std::int64_t{node.x} * header_.leaf_cells);
     block.first_row = static_cast<std::uint16_t>(tile.first_row - std::int64_t{node.y} * header_.leaf_cells);
     const double scale = static_cast<double>(std::int64_t{1} << node.level);
-    block.spacing_x = header_.longitude.spacing_degrees * scale;
-    block.spacing_y = header_.latitude.spacing_degrees * scale;
+    block.spacing_x = header_.x_axis.spacing * scale;
+    block.spacing_y = header_.y_axis.spacing * scale;
     block.quantum = header_.quantum;
     block.heights = std::move(tile.heights);
     block.valid = std::move(tile.valid);
@@ -299,10 +299,10 @@ class TerrainBuild {
   }
 
   void describeArea() {
-    area_.west = geometry_.longitude(header_.longitude.first);
-    area_.east = geometry_.longitude(header_.longitude.first + header_.longitude.count - 1);
-    area_.south = geometry_.latitude(header_.latitude.first);
-    area_.north = geometry_.latitude(header_.latitude.first + header_.latitude.count - 1);
+    area_.west = geometry_.longitude(header_.x_axis.first);
+    area_.east = geometry_.longitude(header_.x_axis.first + header_.x_axis.count - 1);
+    area_.south = geometry_.latitude(header_.y_axis.first);
+    area_.north = geometry_.latitude(header_.y_axis.first + header_.y_axis.count - 1);
     area_.centroid = grid_bounds_.centroid;
     area_.lowest_height = geometry_.metres(grid_bounds_.minimum_height);
     area_.highest_height = geometry_.metres(grid_bounds_.maximum_height);
@@ -317,7 +317,7 @@ class TerrainBuild {
     constexpr double kRadians = std::numbers::pi / 180.0;
     const double scale = static_cast<double>(std::int64_t{1} << (plan_.level_count - 1)) * kRadians;
     const double angle =
-        std::hypot(header_.longitude.spacing_degrees, header_.latitude.spacing_degrees) * scale;
+        std::hypot(header_.x_axis.spacing, header_.y_axis.spacing) * scale;
     const double distance =
         header_.ellipsoid.semi_major_axis + std::abs(geometry_.metres(grid_bounds_.maximum_height));
     return std::ceil(distance * (1.0 - std::cos(std::min(angle / 2, std::numbers::pi / 2))) / kErrorUnit) *

@@ -25,11 +25,11 @@ class CoarseWindow {
     positions_.resize(static_cast<std::size_t>(columns.size() * rows.size()));
     valid_.assign(positions_.size(), 0);
     for (std::int64_t J = rows.begin; J < rows.end; ++J) {
-      const std::int64_t row = J * step - grid.header.latitude.first;
-      if (row < 0 || row >= grid.header.latitude.count) continue;
+      const std::int64_t row = J * step - grid.header.y_axis.first;
+      if (row < 0 || row >= grid.header.y_axis.count) continue;
       for (std::int64_t I = columns.begin; I < columns.end; ++I) {
-        const std::int64_t column = I * step - grid.header.longitude.first;
-        if (column < 0 || column >= grid.header.longitude.count || !grid.isValid(column, row)) continue;
+        const std::int64_t column = I * step - grid.header.x_axis.first;
+        if (column < 0 || column >= grid.header.x_axis.count || !grid.isValid(column, row)) continue;
         positions_[index(I, J)] = earthCentred(row_constants[static_cast<std::size_t>(J - rows.begin)],
                                                column_constants[static_cast<std::size_t>(I - columns.begin)],
                                                geometry.metres(grid.height(column, row)));
@@ -181,7 +181,7 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
     for (std::int64_t row = rows.begin; row < rows.end; ++row) {
       const RowConstants& row_constant = row_constants[static_cast<std::size_t>(row - rows.begin)];
       for (std::int64_t column = columns.begin; column < columns.end; ++column) {
-        if (!grid.isValid(column - grid.header.longitude.first, row - grid.header.latitude.first)) continue;
+        if (!grid.isValid(column - grid.header.x_axis.first, row - grid.header.y_axis.first)) continue;
         double difference = 0;
         // A post of the coarse level is a corner of its facets: no difference.
         if (column % step != 0 || row % step != 0) {
@@ -192,7 +192,7 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
                               upVector(row_constant, column_constant));
           if (!surface.valid) continue;
           const double height = geometry.metres(
-              grid.height(column - grid.header.longitude.first, row - grid.header.latitude.first));
+              grid.height(column - grid.header.x_axis.first, row - grid.header.y_axis.first));
           difference = std::abs(height - surface.height);
         }
         maximum = std::max(maximum, difference);
@@ -212,12 +212,12 @@ double betweenPostsSlack(const GridGeometry& geometry, int level, const std::vec
   const GridHeader& header = geometry.header();
   constexpr double kRadians = std::numbers::pi / 180.0;
   const double radius = header.ellipsoid.semi_major_axis;
-  const double south = geometry.latitude(header.latitude.first) * kRadians;
-  const double north = geometry.latitude(header.latitude.first + header.latitude.count - 1) * kRadians;
+  const double south = geometry.latitude(header.y_axis.first) * kRadians;
+  const double north = geometry.latitude(header.y_axis.first + header.y_axis.count - 1) * kRadians;
   const double largest_sine = std::max(std::abs(std::sin(south)), std::abs(std::sin(north)));
   const double largest_cosine = south <= 0 && north >= 0 ? 1.0 : std::max(std::cos(south), std::cos(north));
-  const double fine_lon = header.longitude.spacing_degrees * kRadians;
-  const double fine_lat = header.latitude.spacing_degrees * kRadians;
+  const double fine_lon = header.x_axis.spacing * kRadians;
+  const double fine_lat = header.y_axis.spacing * kRadians;
   const double fine_diagonal = radius * std::hypot(fine_lon * largest_cosine, fine_lat);
   const double g0 = steepest[0];
   const double within_facet = (1 + 2 * g0 * g0) * fine_diagonal * fine_diagonal / (8 * radius);

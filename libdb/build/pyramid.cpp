@@ -78,8 +78,8 @@ TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level
   tile.heights.assign(size, 0);
   tile.valid.assign(size, 0);
   const std::int64_t step = std::int64_t{1} << level;
-  const GridAxis& longitude = grid.header.longitude;
-  const GridAxis& latitude = grid.header.latitude;
+  const GridAxis& longitude = grid.header.x_axis;
+  const GridAxis& latitude = grid.header.y_axis;
   for (int j = -1; j <= tile.rows; ++j) {
     const std::int64_t row = (tile.first_row + j) * step - latitude.first;
     if (row < 0 || row >= latitude.count) continue;

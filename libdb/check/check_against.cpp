@@ -37,9 +37,9 @@ class SourceRule {
                    [&](std::size_t item, Report& report) { compareLeaf(leaves[item], report); });
     loader_.reportRefusedReads(context_.report);
     const std::int64_t columns = std::min(columnsEnd(), geometry_.columnsAt(0).end) -
-                                 std::max(source_.header.longitude.first, geometry_.columnsAt(0).begin);
+                                 std::max(source_.header.x_axis.first, geometry_.columnsAt(0).begin);
     const std::int64_t rows = std::min(rowsEnd(), geometry_.rowsAt(0).end) -
-                              std::max(source_.header.latitude.first, geometry_.rowsAt(0).begin);
+                              std::max(source_.header.y_axis.first, geometry_.rowsAt(0).begin);
     const std::uint64_t expected =
         columns > 0 && rows > 0 ? static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows) : 0;
     if (context_.report.posts_compared < expected) {
@@ -51,8 +51,8 @@ class SourceRule {
   }
 
  private:
-  std::int64_t columnsEnd() const { return source_.header.longitude.first + source_.header.longitude.count; }
-  std::int64_t rowsEnd() const { return source_.header.latitude.first + source_.header.latitude.count; }
+  std::int64_t columnsEnd() const { return source_.header.x_axis.first + source_.header.x_axis.count; }
+  std::int64_t rowsEnd() const { return source_.header.y_axis.first + source_.header.y_axis.count; }
 
   void complain(IssueCode code, std::string message) {
     IssueLocation where;
@@ -82,17 +82,17 @@ class SourceRule {
       differ(fmt::format("a height step is {} m, the source's {} m", ours.quantum.value(),
                          theirs.quantum.value()));
     }
-    if (!samePosts(ours.longitude, theirs.longitude, -180.0))
+    if (!samePosts(ours.x_axis, theirs.x_axis, kLongitudeOrigin))
       differ("columns are not at the source's longitudes");
-    if (!samePosts(ours.latitude, theirs.latitude, -90.0)) differ("rows are not at the source's latitudes");
+    if (!samePosts(ours.y_axis, theirs.y_axis, kLatitudeOrigin)) differ("rows are not at the source's latitudes");
     return same;
   }
 
   // Whether posts with the same index lie at the same place all along both axes.
-  static bool samePosts(const GridAxis& ours, const GridAxis& theirs, double origin) {
+  static bool samePosts(const GridAxis& ours, const GridAxis& theirs, const AxisOrigin& origin) {
     const auto differ = [&](std::int64_t post) {
-      return std::abs(postDegrees(ours, origin, post) - postDegrees(theirs, origin, post)) >
-             kSamePostFraction * ours.spacing_degrees;
+      return std::abs(postCoordinate(ours, origin, post) - postCoordinate(theirs, origin, post)) >
+             kSamePostFraction * ours.spacing;
     };
     return !differ(std::min(ours.first, theirs.first)) &&
            !differ(std::max(ours.first + ours.count, theirs.first + theirs.count) - 1);
@@ -105,8 +105,8 @@ class SourceRule {
                fmt::format("the database has {} {} from {} on, the source {} from {} on", ours.count, what,
                            ours.first, theirs.count, theirs.first));
     };
-    check(geometry_.header().longitude, source_.header.longitude, "columns");
-    check(geometry_.header().latitude, source_.header.latitude, "rows");
+    check(geometry_.header().x_axis, source_.header.x_axis, "columns");
+    check(geometry_.header().y_axis, source_.header.y_axis, "rows");
   }
 
   void compareLeaf(std::uint32_t number, Report& report) {
@@ -121,10 +121,10 @@ class SourceRule {
     const std::int64_t leaf = geometry_.header().leaf_cells;
     const PostRange columns = geometry_.nodeColumnsAt(0), rows = geometry_.nodeRowsAt(0);
     // A post on a shared border belongs to one leaf only, so that it is compared and counted once.
-    for (std::int64_t row = std::max(tile.rows.begin, source_.header.latitude.first);
+    for (std::int64_t row = std::max(tile.rows.begin, source_.header.y_axis.first);
          row < std::min(tile.rows.end, rowsEnd()); ++row) {
       if (ownerOf(row, leaf, rows) != record.y) continue;
-      for (std::int64_t column = std::max(tile.columns.begin, source_.header.longitude.first);
+      for (std::int64_t column = std::max(tile.columns.begin, source_.header.x_axis.first);
            column < std::min(tile.columns.end, columnsEnd()); ++column) {
         if (ownerOf(column, leaf, columns) == record.x) comparePost(number, tile, column, row, report);
       }
@@ -146,8 +146,8 @@ class SourceRule {
   void comparePost(std::uint32_t number, const LoadedTile& tile, std::int64_t column, std::int64_t row,
                    Report& report) {
     ++report.posts_compared;
-    const std::int64_t source_column = column - source_.header.longitude.first;
-    const std::int64_t source_row = row - source_.header.latitude.first;
+    const std::int64_t source_column = column - source_.header.x_axis.first;
+    const std::int64_t source_row = row - source_.header.y_axis.first;
     const bool valid = tile.isValid(column, row), source_valid = source_.isValid(source_column, source_row);
     if (!valid && !source_valid) return;
     const auto where = [&] {

@@ -58,6 +58,8 @@ struct CheckContext {
 
   AreaHeader area;
   std::vector<GridGeometry> grids;
+  // False if the control points of a projected grid could not be read: then no position may be asked for.
+  bool positions_known = true;
   std::vector<CheckedFile> listed;                 // in area.json's order
   CheckedFile* nodes = nullptr;                    // none if it could not be opened
   std::map<std::uint32_t, CheckedFile*> segments;  // listed ones, opened or not

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "libdb/access/referenced_file.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/report_detail.h"
 
@@ -15,10 +16,6 @@ IssueLocation inFile(const std::string& name) {
   IssueLocation where;
   where.file = name;
   return where;
-}
-
-ContentKind contentKind(FileRole role) {
-  return role == FileRole::kNodes ? ContentKind::kNodes : ContentKind::kTerrain;
 }
 
 // Nothing can be checked: the one finding is the error that says why.
@@ -67,7 +64,7 @@ Status openContainer(CheckContext& context, CheckedFile& file) {
     return invalidError(IssueCode::kIoMissingFile, path, "area.json lists this file, but it is not there");
   }
   DELTAZ_TRY_ASSIGN(ContainerReader container,
-                    ContainerReader::open(context.files, path, contentKind(reference.role)));
+                    ContainerReader::open(context.files, path, contentKindOf(reference.role)));
   const FileIdentity& identity = container.identity();
   if (identity.length != reference.length || identity.id != reference.id) {
     return invalidError(
@@ -101,7 +98,7 @@ void checkFileList(CheckContext& context) {
   for (const CheckedFile& file : context.listed) {
     if (file.reference.role == FileRole::kNodes) {
       ++node_files;
-    } else if (file.reference.segment != next_segment++) {
+    } else if (file.reference.role == FileRole::kTerrain && file.reference.segment != next_segment++) {
       complain(fmt::format("terrain segment {} is not numbered in order", file.reference.segment));
     }
   }
@@ -117,11 +114,39 @@ void checkFileList(CheckContext& context) {
   }
 }
 
+// The control points of grid `grid`; none if it needs none. What is wrong with them is reported, and clears
+// context.positions_known.
+std::shared_ptr<const PatchLattice> patchesOf(CheckContext& context, std::size_t grid) {
+  const std::optional<PatchPlacement>& placement = context.area.grids[grid].patches;
+  const CheckedFile* found = nullptr;
+  std::size_t files = 0;
+  for (const CheckedFile& file : context.listed) {
+    if (file.reference.role != FileRole::kPatches || file.reference.segment != grid) continue;
+    ++files;
+    found = &file;
+  }
+  if (files != (placement ? 1u : 0u)) {
+    context.report.add(makeIssue(IssueCode::kManField,
+                                 fmt::format("{} files with control points are listed for grid {}, not {}",
+                                             files, grid, placement ? 1 : 0),
+                                 inFile(std::string(kAreaFileName))));
+    if (placement) context.positions_known = false;
+    return nullptr;
+  }
+  if (!placement) return nullptr;
+  if (found->container) {
+    auto lattice = readPatchLattice(*found->container, *placement);
+    if (lattice.ok()) return std::move(lattice).value();
+    addError(context.report, lattice.error(), inFile(found->reference.name));
+  }
+  context.positions_known = false;
+  return nullptr;
+}
+
 }  // namespace
 
 bool openDatabaseFiles(CheckContext& context) {
   if (!readArea(context)) return false;
-  for (const GridHeader& grid : context.area.grids) context.grids.emplace_back(grid);
   context.listed.resize(context.area.files.size());
   for (std::size_t i = 0; i < context.listed.size(); ++i) {
     CheckedFile& file = context.listed[i];
@@ -129,10 +154,12 @@ bool openDatabaseFiles(CheckContext& context) {
     openFile(context, file);
     if (file.reference.role == FileRole::kTerrain) {
       context.segments.emplace(file.reference.segment, &file);
-    } else if (file.container) {
+    } else if (file.reference.role == FileRole::kNodes && file.container) {
       context.nodes = &file;
     }
   }
+  for (std::size_t grid = 0; grid < context.area.grids.size(); ++grid)
+    context.grids.emplace_back(context.area.grids[grid], patchesOf(context, grid));
   checkFileList(context);
   return true;
 }

@@ -92,8 +92,8 @@ class TerrainRule {
     const TerrainBlock& block = tile.block;
     const double step = std::ldexp(1.0, record.level);
     std::string_view wrong;
-    if (block.spacing_x != grid.longitude.spacing_degrees * step ||
-        block.spacing_y != grid.latitude.spacing_degrees * step) {
+    if (block.spacing_x != grid.x_axis.spacing * step ||
+        block.spacing_y != grid.y_axis.spacing * step) {
       wrong = "its spacing is not the grid's";
     } else if (block.quantum != grid.quantum) {
       wrong = "its quantum is not the grid's";

@@ -281,8 +281,8 @@ class TreeRule {
     if (context_.grids.size() != 1) return;
     const GridGeometry& geometry = context_.grids[0];
     const AreaHeader& area = context_.area;
-    const GridAxis& longitude = geometry.header().longitude;
-    const GridAxis& latitude = geometry.header().latitude;
+    const GridAxis& longitude = geometry.header().x_axis;
+    const GridAxis& latitude = geometry.header().y_axis;
     const auto differ = [](double a, double b) { return std::abs(std::remainder(a - b, 360.0)) > 1e-9; };
     if (differ(area.west, geometry.longitude(longitude.first)) ||
         differ(area.east, geometry.longitude(longitude.first + longitude.count - 1)) ||
@@ -381,10 +381,10 @@ IssueLocation CheckContext::locate(std::uint32_t number) const {
   const GridGeometry& geometry = grids[node.grid];
   if (node.level >= geometry.header().level_count) return where;
   const double leaf = static_cast<double>(geometry.header().leaf_cells) * std::ldexp(1.0, node.level);
-  const GridAxis& longitude = geometry.header().longitude;
-  const GridAxis& latitude = geometry.header().latitude;
-  where.longitude = -180.0 + ((node.x + 0.5) * leaf + longitude.phase) * longitude.spacing_degrees;
-  where.latitude = -90.0 + ((node.y + 0.5) * leaf + latitude.phase) * latitude.spacing_degrees;
+  const GridAxis& longitude = geometry.header().x_axis;
+  const GridAxis& latitude = geometry.header().y_axis;
+  where.longitude = -180.0 + ((node.x + 0.5) * leaf + longitude.phase) * longitude.spacing;
+  where.latitude = -90.0 + ((node.y + 0.5) * leaf + latitude.phase) * latitude.spacing;
   return where;
 }
 

@@ -173,6 +173,12 @@ constexpr std::array kRegistry = {
         "Two nodes of one level have different heights, or a height and a void, at a post on their common "
         "border: a crack.",
         kRebuild, "terrain_segment.md 2"},
+    CodeDescription{
+        IssueCode::kHgtPatches, kError, kStructure,
+        "the control points of a projected grid are damaged or missing",
+        "A projected grid needs a lattice of control points that places its posts on the Earth; there "
+        "are not as many as area.json announces, or one is nowhere near the Earth.",
+        kRebuild, "patch_lattice.md 1"},
     CodeDescription{IssueCode::kSrcHeight, kError, kDecode, "a height differs from the source",
                     "Database and source have different heights at the same post. One of them was changed, "
                     "or this is not "

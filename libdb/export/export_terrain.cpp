@@ -23,7 +23,7 @@ constexpr double kDefaultNodata = -32768;
 GridAxis axisAt(const GridAxis& axis, PostRange posts, int level) {
   GridAxis coarse = axis;
   const double step = static_cast<double>(std::int64_t{1} << level);
-  coarse.spacing_degrees *= step;
+  coarse.spacing *= step;
   coarse.phase /= step;
   if (coarse.exact_spacing) coarse.exact_spacing->numerator *= std::int64_t{1} << level;
   coarse.first = posts.begin;
@@ -32,14 +32,14 @@ GridAxis axisAt(const GridAxis& axis, PostRange posts, int level) {
 }
 
 std::array<double, 6> geotransformOf(const GridHeader& header) {
-  const double west = postDegrees(header.longitude, -180, header.longitude.first);
-  const double north = postDegrees(header.latitude, -90, header.latitude.first + header.latitude.count - 1);
-  return {west - 0.5 * header.longitude.spacing_degrees,
-          header.longitude.spacing_degrees,
+  const double west = postCoordinate(header.x_axis, kLongitudeOrigin, header.x_axis.first);
+  const double north = postCoordinate(header.y_axis, kLatitudeOrigin, header.y_axis.first + header.y_axis.count - 1);
+  return {west - 0.5 * header.x_axis.spacing,
+          header.x_axis.spacing,
           0,
-          north + 0.5 * header.latitude.spacing_degrees,
+          north + 0.5 * header.y_axis.spacing,
           0,
-          -header.latitude.spacing_degrees};
+          -header.y_axis.spacing};
 }
 
 Status writeRaster(const RawGrid& grid, int level, const std::string& path, const std::string& target,
@@ -50,8 +50,8 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
   if (driver == nullptr) return internalError(target, "GDAL has no GeoTIFF driver");
   GDALDataType type = GDALGetDataTypeByName(source.data_type.c_str());
   if (type == GDT_Unknown) type = GDT_Int32;
-  const int columns = static_cast<int>(header.longitude.count);
-  const int rows = static_cast<int>(header.latitude.count);
+  const int columns = static_cast<int>(header.x_axis.count);
+  const int rows = static_cast<int>(header.y_axis.count);
   CPLStringList creation;
   creation.SetNameValue("COMPRESS", "DEFLATE");
   creation.SetNameValue("PREDICTOR", "2");
@@ -112,8 +112,8 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
   RawGrid grid;
   grid.header = geometry.header();
   if (level > 0) {
-    grid.header.longitude = axisAt(grid.header.longitude, columns, level);
-    grid.header.latitude = axisAt(grid.header.latitude, rows, level);
+    grid.header.x_axis = axisAt(grid.header.x_axis, columns, level);
+    grid.header.y_axis = axisAt(grid.header.y_axis, rows, level);
   }
   DELTAZ_TRY_ASSIGN(const std::vector<Node> nodes, nodesOfLevel(database, grid_number, level));
   // A damaged header must not make us ask for more memory than the nodes could fill.

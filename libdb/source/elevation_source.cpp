@@ -234,8 +234,8 @@ Status placeGrid(const SourceDescription& source, const std::string& path, GridH
   // The west edge in [-180, 180), also when rounding left it a hair below.
   while (west < -180 - kDegreesTolerance) west += 360;
   while (west >= 180 - kDegreesTolerance) west -= 360;
-  header.longitude = placeAxis(west, transform[1], source.columns, -180);
-  header.latitude = placeAxis(south, spacing_y, source.rows, -90);
+  header.x_axis = placeAxis(west, transform[1], source.columns, kLongitudeOrigin);
+  header.y_axis = placeAxis(south, spacing_y, source.rows, kLatitudeOrigin);
   return Success{};
 }
 

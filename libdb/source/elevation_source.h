@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "formats/area.h"
 #include "formats/error.h"
 #include "formats/file_system.h"
+#include "formats/patch_lattice.h"
 
 namespace deltaz {
 
@@ -25,15 +27,17 @@ struct SourceOptions {
 
 // A whole grid of posts in memory: the report's raw gaming area.
 struct RawGrid {
-  GridHeader header;  // level_count is not yet set
-  std::vector<std::int32_t>
-      heights;  // latitude.count rows of longitude.count posts, from the south-west, quanta
-  std::vector<std::uint8_t> valid;  // 1 or 0, same shape; empty if every post is valid
+  GridHeader header;                  // level_count is not yet set
+  std::vector<std::int32_t> heights;  // y_axis.count rows of x_axis.count posts, from the south-west, quanta
+  std::vector<std::uint8_t> valid;    // 1 or 0, same shape; empty if every post is valid
+  // Index into header.sentinels of each void post, same shape; empty if all are 0.
+  std::vector<std::uint8_t> void_kinds;
+  std::shared_ptr<const PatchLattice> patches;  // projected grids only
   bool isValid(std::int64_t column, std::int64_t row) const {
-    return valid.empty() || valid[static_cast<std::size_t>(row * header.longitude.count + column)] != 0;
+    return valid.empty() || valid[static_cast<std::size_t>(row * header.x_axis.count + column)] != 0;
   }
   std::int32_t height(std::int64_t column, std::int64_t row) const {
-    return heights[static_cast<std::size_t>(row * header.longitude.count + column)];
+    return heights[static_cast<std::size_t>(row * header.x_axis.count + column)];
   }
 };
 

@@ -39,35 +39,35 @@ std::optional<Rational> simplestFraction(double value, double tolerance) {
   return Rational{numerator, denominator};
 }
 
-double largestDeviation(const GridAxis& axis, double origin, double first_degrees, double spacing_degrees) {
-  const double at_first = postDegrees(axis, origin, axis.first) - first_degrees;
-  const double at_last = postDegrees(axis, origin, axis.first + axis.count - 1) -
-                         (first_degrees + static_cast<double>(axis.count - 1) * spacing_degrees);
+double largestDeviation(const GridAxis& axis, const AxisOrigin& origin, double first, double spacing) {
+  const double at_first = postCoordinate(axis, origin, axis.first) - first;
+  const double at_last = postCoordinate(axis, origin, axis.first + axis.count - 1) -
+                         (first + static_cast<double>(axis.count - 1) * spacing);
   return std::max(std::abs(at_first), std::abs(at_last));
 }
 
 }  // namespace
 
-GridAxis placeAxis(double first_degrees, double spacing_degrees, std::int64_t count, double origin) {
+GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin) {
+  const double tolerance = placementTolerance(origin);
   GridAxis axis;
   axis.count = count;
   // Whole multiples of an exact spacing, if the source lies on them.
-  const double tolerance_arcseconds = kPlacementTolerance * 3600.0 / static_cast<double>(count);
-  if (const std::optional<Rational> exact =
-          simplestFraction(spacing_degrees * 3600.0, tolerance_arcseconds)) {
+  if (const std::optional<Rational> exact = simplestFraction(
+          spacing * origin.exact_per_unit, tolerance * origin.exact_per_unit / static_cast<double>(count))) {
     axis.exact_spacing = *exact;
-    axis.spacing_degrees = exact->value() / 3600.0;
+    axis.spacing = exact->value() / origin.exact_per_unit;
     axis.phase = 0;
-    axis.first = std::llround((first_degrees - origin) / axis.spacing_degrees);
-    if (largestDeviation(axis, origin, first_degrees, spacing_degrees) <= kPlacementTolerance) return axis;
+    axis.first = std::llround((first - origin.coordinate) / axis.spacing);
+    if (largestDeviation(axis, origin, first, spacing) <= tolerance) return axis;
     axis.exact_spacing.reset();
   }
   // Otherwise the source's own spacing, with the sub-post phase of its first post.
-  axis.spacing_degrees = spacing_degrees;
-  const double position = (first_degrees - origin) / spacing_degrees;
+  axis.spacing = spacing;
+  const double position = (first - origin.coordinate) / spacing;
   axis.first = std::llround(position);
   axis.phase = 0;
-  if (largestDeviation(axis, origin, first_degrees, spacing_degrees) <= kPlacementTolerance) return axis;
+  if (largestDeviation(axis, origin, first, spacing) <= tolerance) return axis;
   axis.first = static_cast<std::int64_t>(std::floor(position));
   axis.phase = std::min(position - std::floor(position), std::nextafter(1.0, 0.0));
   return axis;

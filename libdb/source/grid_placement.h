@@ -10,11 +10,17 @@ namespace deltaz {
 
 // A post may move this far when its place is taken to be the exact one that the source rounded: 0.1 mm on the
 // ground.
-inline constexpr double kPlacementTolerance = 1e-9;  // degrees
+inline constexpr double kPlacementTolerance = 1e-9;           // degrees
+inline constexpr double kProjectedPlacementTolerance = 1e-4;  // units of the projection
 
-// Axis of `count` >= 2 posts from `first_degrees` on, `spacing_degrees` > 0 apart; `origin` is -180 or -90.
-// Guarantee: postDegrees() of post k differs from first_degrees + k * spacing_degrees by at most
-// kPlacementTolerance.
-GridAxis placeAxis(double first_degrees, double spacing_degrees, std::int64_t count, double origin);
+// The tolerance that goes with an origin.
+inline double placementTolerance(const AxisOrigin& origin) {
+  return origin.exact_per_unit == kProjectedOrigin.exact_per_unit ? kProjectedPlacementTolerance
+                                                                  : kPlacementTolerance;
+}
+
+// Axis of `count` >= 2 posts from coordinate `first` on, `spacing` > 0 apart. Guarantee: postCoordinate() of
+// post k differs from first + k * spacing by at most placementTolerance(origin).
+GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin);
 
 }  // namespace deltaz

@@ -26,8 +26,8 @@ AreaHeader sampleArea() {
   grid.vertical_datum = "unknown";
   grid.unit = "metre";
   grid.quantum = {1200, 3937};
-  grid.longitude = {3.0 / 3600, Rational{3, 1}, 0, 69600, 1201};
-  grid.latitude = {0.00083, std::nullopt, 0.25, 163200, 1201};
+  grid.x_axis = {3.0 / 3600, Rational{3, 1}, 0, 69600, 1201};
+  grid.y_axis = {0.00083, std::nullopt, 0.25, 163200, 1201};
   grid.level_count = 6;
   SourceDescription source;
   source.name = "mt_rainier.tif";
@@ -114,7 +114,7 @@ TEST(Area, values_out_of_range_are_named) {
   EXPECT_EQ(fault("nodes-000001.dzn", "../nodes.dzn"),
             "MAN_FIELD member files[0].name is not a plain file name");
   EXPECT_EQ(fault("\"phase\": 0.25", "\"phase\": 1.0"),
-            "MAN_FIELD member grids[0].latitude.phase is out of range");
+            "MAN_FIELD member grids[0].y_axis.phase is out of range");
   EXPECT_EQ(fault("\"diagonal\": \"SW-NE\"", "\"diagonal\": \"NW-SE\""),
             "MAN_FIELD member grids[0].diagonal is not SW-NE");
 }

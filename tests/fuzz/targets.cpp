@@ -128,7 +128,7 @@ void fuzzArea(std::span<const std::byte> input) {
     for (int level = 0; level < header.level_count; ++level) {
       const PostRange posts = geometry.columnsAt(level), nodes = geometry.nodeColumnsAt(level);
       promise(nodes.size() >= 1, "an area has a node of every level");
-      promise(posts.size() <= header.longitude.count, "no level has more posts than the finest");
+      promise(posts.size() <= header.x_axis.count, "no level has more posts than the finest");
     }
   }
 }

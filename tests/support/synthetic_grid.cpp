@@ -37,12 +37,11 @@ std::int64_t noise(std::uint32_t seed, std::int64_t column, std::int64_t row, st
   return (south * (period - v) + north * v) / (period * period);
 }
 
-GridAxis axisFrom(double origin, double start, const Rational& spacing, std::int64_t count) {
+GridAxis axisFrom(const AxisOrigin& origin, double start, const Rational& spacing, std::int64_t count) {
   GridAxis axis;
   axis.exact_spacing = spacing;
-  axis.spacing_degrees =
-      static_cast<double>(spacing.numerator) / (3600.0 * static_cast<double>(spacing.denominator));
-  const double posts = (start - origin) * 3600.0 * static_cast<double>(spacing.denominator) /
+  axis.spacing = static_cast<double>(spacing.numerator) / (3600.0 * static_cast<double>(spacing.denominator));
+  const double posts = (start - origin.coordinate) * 3600.0 * static_cast<double>(spacing.denominator) /
                        static_cast<double>(spacing.numerator);
   // A start meant to lie on a multiple does, whatever the division rounds to.
   const double nearest = std::round(posts);
@@ -84,8 +83,8 @@ RawGrid syntheticGrid(const SyntheticGridOptions& options) {
   header.vertical_datum = "EGM96 height";
   header.unit = "metre";
   header.quantum = options.quantum;
-  header.longitude = axisFrom(-180, options.west, options.spacing_longitude, options.columns);
-  header.latitude = axisFrom(-90, options.south, options.spacing_latitude, options.rows);
+  header.x_axis = axisFrom(kLongitudeOrigin, options.west, options.spacing_longitude, options.columns);
+  header.y_axis = axisFrom(kLatitudeOrigin, options.south, options.spacing_latitude, options.rows);
 
   SourceDescription source;
   source.name = "synthetic.tif";
@@ -96,7 +95,7 @@ RawGrid syntheticGrid(const SyntheticGridOptions& options) {
   source.unit = std::string("m");
   source.columns = options.columns;
   source.rows = options.rows;
-  const double dx = header.longitude.spacing_degrees, dy = header.latitude.spacing_degrees;
+  const double dx = header.x_axis.spacing, dy = header.y_axis.spacing;
   const double north = options.south + dy * static_cast<double>(options.rows - 1);
   source.geotransform = {options.west - dx / 2, dx, 0, north + dy / 2, 0, -dy};
   header.sources.push_back(source);

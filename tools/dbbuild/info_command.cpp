@@ -18,7 +18,7 @@ std::string rationalText(const Rational& value) {
 
 Json axisJson(const GridAxis& axis) {
   Json json;
-  json["spacing_degrees"] = axis.spacing_degrees;
+  json["spacing"] = axis.spacing;
   json["spacing_arc_seconds"] = axis.exact_spacing ? Json(rationalText(*axis.exact_spacing)) : Json(nullptr);
   json["phase"] = axis.phase;
   json["first"] = axis.first;
@@ -51,8 +51,8 @@ Json gridJson(const GridHeader& grid) {
   json["crs_wkt"] = grid.crs_wkt;
   json["unit"] = grid.unit;
   json["quantum"] = rationalText(grid.quantum);
-  json["longitude"] = axisJson(grid.longitude);
-  json["latitude"] = axisJson(grid.latitude);
+  json["longitude"] = axisJson(grid.x_axis);
+  json["latitude"] = axisJson(grid.y_axis);
   json["leaf_cells"] = grid.leaf_cells;
   json["level_count"] = grid.level_count;
   json["normal_exponent"] = grid.normal_exponent;
@@ -77,7 +77,7 @@ Json areaJson(const std::string& path, const AreaHeader& area) {
   json["files"] = Json::array();
   for (const FileReference& file : area.files) {
     json["files"].push_back({{"name", file.name},
-                             {"role", file.role == FileRole::kNodes ? "nodes" : "terrain"},
+                             {"role", std::string(fileRoleName(file.role))},
                              {"bytes", file.length},
                              {"id", toHex(file.id)}});
   }
@@ -88,7 +88,7 @@ Json areaJson(const std::string& path, const AreaHeader& area) {
 
 std::string axisText(const GridAxis& axis) {
   return axis.exact_spacing ? rationalText(*axis.exact_spacing) + " arc-seconds"
-                            : fmt::format("{} degrees", axis.spacing_degrees);
+                            : fmt::format("{} degrees", axis.spacing);
 }
 
 std::string areaText(const std::string& path, const AreaHeader& area, bool verbose) {
@@ -99,8 +99,8 @@ std::string areaText(const std::string& path, const AreaHeader& area, bool verbo
   text += fmt::format("  nodes           {}\n", area.node_count);
   for (std::size_t i = 0; i < area.grids.size(); ++i) {
     const GridHeader& grid = area.grids[i];
-    text += fmt::format("  grid {}          {}, {} x {} posts, {} x {}\n", i, grid.kind, grid.longitude.count,
-                        grid.latitude.count, axisText(grid.longitude), axisText(grid.latitude));
+    text += fmt::format("  grid {}          {}, {} x {} posts, {} x {}\n", i, grid.kind, grid.x_axis.count,
+                        grid.y_axis.count, axisText(grid.x_axis), axisText(grid.y_axis));
     text += fmt::format("    datum         {}; heights: {}\n", grid.horizontal_datum, grid.vertical_datum);
     text += fmt::format("    quantum       {} m, leaves of {} cells, {} levels\n", rationalText(grid.quantum),
                         grid.leaf_cells, grid.level_count);

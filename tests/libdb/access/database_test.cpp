@@ -25,10 +25,10 @@ TEST(Database, hands_out_exactly_what_was_built) {
       const std::int64_t step = std::int64_t{1} << level;
       for (int j = -1; j <= tile.value().rows; ++j) {
         for (int i = -1; i <= tile.value().columns; ++i) {
-          const std::int64_t column = (tile.value().first_column + i) * step - header.longitude.first;
-          const std::int64_t row = (tile.value().first_row + j) * step - header.latitude.first;
+          const std::int64_t column = (tile.value().first_column + i) * step - header.x_axis.first;
+          const std::int64_t row = (tile.value().first_row + j) * step - header.y_axis.first;
           const bool inside =
-              column >= 0 && column < header.longitude.count && row >= 0 && row < header.latitude.count;
+              column >= 0 && column < header.x_axis.count && row >= 0 && row < header.y_axis.count;
           ASSERT_EQ(tile.value().isValid(i, j), inside && grid.isValid(column, row));
           if (tile.value().isValid(i, j)) {
             ASSERT_EQ(tile.value().height(i, j), grid.height(column, row));

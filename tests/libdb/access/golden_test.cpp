@@ -29,8 +29,8 @@ TEST(Golden, version_1_reads_post_for_post) {
   ASSERT_TRUE(grid.ok()) << grid.error().message();
   const RawGrid expected = goldenGrid();
   ASSERT_EQ(grid.value().heights.size(), expected.heights.size());
-  for (std::int64_t row = 0; row < expected.header.latitude.count; ++row) {
-    for (std::int64_t column = 0; column < expected.header.longitude.count; ++column) {
+  for (std::int64_t row = 0; row < expected.header.y_axis.count; ++row) {
+    for (std::int64_t column = 0; column < expected.header.x_axis.count; ++column) {
       ASSERT_EQ(grid.value().isValid(column, row), expected.isValid(column, row));
       if (expected.isValid(column, row)) {
         ASSERT_EQ(grid.value().height(column, row), expected.height(column, row));

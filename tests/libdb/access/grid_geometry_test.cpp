@@ -10,10 +10,10 @@ namespace {
 
 TEST(GridGeometry, exact_spacings_hit_whole_degrees_exactly) {
   const GridAxis axis{3.0 / 3600, Rational{3, 1}, 0, 69600, 1201};
-  EXPECT_EQ(postDegrees(axis, -180, 69600), -122.0);
-  EXPECT_EQ(postDegrees(axis, -180, 69600 + 1200), -121.0);
+  EXPECT_EQ(postCoordinate(axis, kLongitudeOrigin, 69600), -122.0);
+  EXPECT_EQ(postCoordinate(axis, kLongitudeOrigin, 69600 + 1200), -121.0);
   const GridAxis ninth{1.0 / 9 / 3600, Rational{1, 9}, 0, 0, 2};
-  EXPECT_EQ(postDegrees(ninth, -90, 90 * 3600 * 9), 0.0);
+  EXPECT_EQ(postCoordinate(ninth, kLatitudeOrigin, 90 * 3600 * 9), 0.0);
 }
 
 RC_GTEST_PROP(GridGeometry, divisions_round_down_and_up, ()) {
@@ -30,8 +30,8 @@ RC_GTEST_PROP(GridGeometry, divisions_round_down_and_up, ()) {
 RC_GTEST_PROP(GridGeometry, levels_nest_and_nodes_cover, ()) {
   GridHeader header = syntheticGrid().header;
   header.leaf_cells = 8;
-  header.longitude.first = *rc::gen::inRange<std::int64_t>(-100, 100);
-  header.longitude.count = *rc::gen::inRange<std::int64_t>(2, 300);
+  header.x_axis.first = *rc::gen::inRange<std::int64_t>(-100, 100);
+  header.x_axis.count = *rc::gen::inRange<std::int64_t>(2, 300);
   const GridGeometry geometry(header);
   for (int level = 0; level < 6; ++level) {
     const PostRange posts = geometry.columnsAt(level);
@@ -56,7 +56,7 @@ RC_GTEST_PROP(GridGeometry, levels_nest_and_nodes_cover, ()) {
 
 TEST(GridGeometry, a_row_beyond_the_pole_by_rounding_stays_on_it) {
   GridHeader header = syntheticGrid().header;
-  header.latitude = {0.1, std::nullopt, 0.0000000001, 1790, 11};
+  header.y_axis = {0.1, std::nullopt, 0.0000000001, 1790, 11};
   EXPECT_EQ(GridGeometry(header).latitude(1800), 90.0);
 }
 

@@ -45,8 +45,8 @@ TEST_F(GroundQuery, at_a_post_it_is_the_height_of_the_post) {
   const GridGeometry& geometry = database_->grid(0);
   for (std::int64_t row = 0; row < 40; row += 3) {
     for (std::int64_t column = 0; column < 50; column += 7) {
-      const auto height = ground(geometry.latitude(grid_.header.latitude.first + row),
-                                 geometry.longitude(grid_.header.longitude.first + column));
+      const auto height = ground(geometry.latitude(grid_.header.y_axis.first + row),
+                                 geometry.longitude(grid_.header.x_axis.first + column));
       ASSERT_TRUE(height) << column << " " << row;
       EXPECT_NEAR(*height, metres(column, row), kMicrometre);
     }
@@ -62,10 +62,10 @@ TEST_F(GroundQuery, between_posts_it_lies_on_the_facet_and_below_its_chord) {
     const double x = static_cast<double>(random() % 1000) / 1000,
                  y = static_cast<double>(random() % 1000) / 1000;
     const auto between = [](double a, double b, double t) { return a + (b - a) * t; };
-    const double longitude = between(geometry.longitude(grid_.header.longitude.first + column),
-                                     geometry.longitude(grid_.header.longitude.first + column + 1), x);
-    const double latitude = between(geometry.latitude(grid_.header.latitude.first + row),
-                                    geometry.latitude(grid_.header.latitude.first + row + 1), y);
+    const double longitude = between(geometry.longitude(grid_.header.x_axis.first + column),
+                                     geometry.longitude(grid_.header.x_axis.first + column + 1), x);
+    const double latitude = between(geometry.latitude(grid_.header.y_axis.first + row),
+                                    geometry.latitude(grid_.header.y_axis.first + row + 1), y);
     const double linear = x >= y ? metres(column, row) + x * (metres(column + 1, row) - metres(column, row)) +
                                        y * (metres(column + 1, row + 1) - metres(column + 1, row))
                                  : metres(column, row) + y * (metres(column, row + 1) - metres(column, row)) +

@@ -86,11 +86,11 @@ Vector3 independentNormal(const RawGrid& grid, const GridGeometry& geometry, int
   const Real f = 1 / static_cast<Real>(header.ellipsoid.inverse_flattening), e2 = f * (2 - f);
   const std::int64_t step = std::int64_t{1} << level;
   const auto local = [&](std::int64_t i, std::int64_t j) {
-    return std::array{i * step - header.longitude.first, j * step - header.latitude.first};
+    return std::array{i * step - header.x_axis.first, j * step - header.y_axis.first};
   };
   const auto valid = [&](std::int64_t i, std::int64_t j) {
     const auto [c, r] = local(i, j);
-    return c >= 0 && c < header.longitude.count && r >= 0 && r < header.latitude.count && grid.isValid(c, r);
+    return c >= 0 && c < header.x_axis.count && r >= 0 && r < header.y_axis.count && grid.isValid(c, r);
   };
   const auto position = [&](std::int64_t i, std::int64_t j) {
     const auto [c, r] = local(i, j);

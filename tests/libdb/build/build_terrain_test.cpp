@@ -18,8 +18,8 @@ void expectExact(const RawGrid& grid, const BuildOptions& options = {}) {
   const Result<RawGrid> back = readGrid(database.value(), 0, 0);
   ASSERT_TRUE(back.ok()) << back.error().message();
   ASSERT_EQ(back.value().heights.size(), grid.heights.size());
-  for (std::int64_t row = 0; row < grid.header.latitude.count; ++row) {
-    for (std::int64_t column = 0; column < grid.header.longitude.count; ++column) {
+  for (std::int64_t row = 0; row < grid.header.y_axis.count; ++row) {
+    for (std::int64_t column = 0; column < grid.header.x_axis.count; ++column) {
       ASSERT_EQ(back.value().isValid(column, row), grid.isValid(column, row));
       if (grid.isValid(column, row)) {
         ASSERT_EQ(back.value().height(column, row), grid.height(column, row));
@@ -100,7 +100,7 @@ TEST(BuildTerrain, leaves_begin_at_global_multiples_whatever_the_area) {
   const Result<std::vector<Node>> leaves = nodesOfLevel(database.value(), 0, 0);
   for (const Node& leaf : leaves.value()) {
     const TerrainTile tile = database.value().terrain(leaf).value();
-    const bool first = tile.first_column == shifted.header.longitude.first;
+    const bool first = tile.first_column == shifted.header.x_axis.first;
     EXPECT_TRUE(first || tile.first_column % 64 == 0) << tile.first_column;
   }
 }

@@ -21,8 +21,8 @@ std::optional<double> surfaceHeight(const RawGrid& grid, const GridGeometry& geo
                                     double column, double row, const Vector3& foot, const Vector3& up) {
   const std::int64_t step = std::int64_t{1} << level;
   const auto at = [&](std::int64_t i, std::int64_t j) -> std::optional<Vector3> {
-    const std::int64_t c = i * step - grid.header.longitude.first, r = j * step - grid.header.latitude.first;
-    if (c < 0 || c >= grid.header.longitude.count || r < 0 || r >= grid.header.latitude.count ||
+    const std::int64_t c = i * step - grid.header.x_axis.first, r = j * step - grid.header.y_axis.first;
+    if (c < 0 || c >= grid.header.x_axis.count || r < 0 || r >= grid.header.y_axis.count ||
         !grid.isValid(c, r))
       return std::nullopt;
     return toEarthCentred(grid.header.ellipsoid, {geometry.latitude(j * step), geometry.longitude(i * step),
@@ -88,13 +88,13 @@ TEST_P(FacetErrorAt, dense_sampling_never_exceeds_the_stored_error) {
     int sampled = 0;
     for (int sample = 0; sample < 3000; ++sample) {
       const double column =
-          static_cast<double>(header.longitude.first) +
-          std::uniform_real_distribution<double>(0, static_cast<double>(header.longitude.count - 1))(random);
+          static_cast<double>(header.x_axis.first) +
+          std::uniform_real_distribution<double>(0, static_cast<double>(header.x_axis.count - 1))(random);
       const double row =
-          static_cast<double>(header.latitude.first) +
-          std::uniform_real_distribution<double>(0, static_cast<double>(header.latitude.count - 1))(random);
-      const double longitude = -180 + column * header.longitude.spacing_degrees;
-      const double latitude = -90 + row * header.latitude.spacing_degrees;
+          static_cast<double>(header.y_axis.first) +
+          std::uniform_real_distribution<double>(0, static_cast<double>(header.y_axis.count - 1))(random);
+      const double longitude = -180 + column * header.x_axis.spacing;
+      const double latitude = -90 + row * header.y_axis.spacing;
       const RowConstants row_constant = rowConstants(header.ellipsoid, latitude);
       const ColumnConstants column_constant = columnConstants(longitude);
       const Vector3 foot = earthCentred(row_constant, column_constant, 0);
@@ -135,8 +135,8 @@ TEST(FacetError, the_sag_of_a_chord_counts) {
   // A flat Earth would have no error; level 1 has chords of a degree, 3/4 of whose sag is new: the fine ones
   // sag too, but at the posts in the middle the full 242 m (with the diagonal, 484 m) count.
   const std::vector<AncestorError> errors =
-      leafErrors(grid, geometry, 2, static_cast<std::int32_t>(floorDivide(grid.header.longitude.first, 64)),
-                 static_cast<std::int32_t>(floorDivide(grid.header.latitude.first, 64)));
+      leafErrors(grid, geometry, 2, static_cast<std::int32_t>(floorDivide(grid.header.x_axis.first, 64)),
+                 static_cast<std::int32_t>(floorDivide(grid.header.y_axis.first, 64)));
   EXPECT_NEAR(errors[0].maximum * kErrorUnit, 484, 6);
 }
 

@@ -14,10 +14,10 @@ GridHeader headerOf(std::int64_t first_column, std::int64_t columns, std::int64_
                     std::int64_t rows) {
   GridHeader header = syntheticGrid().header;
   header.leaf_cells = 8;
-  header.longitude.first = first_column;
-  header.longitude.count = columns;
-  header.latitude.first = first_row;
-  header.latitude.count = rows;
+  header.x_axis.first = first_column;
+  header.x_axis.count = columns;
+  header.y_axis.first = first_row;
+  header.y_axis.count = rows;
   return header;
 }
 
@@ -58,9 +58,9 @@ TEST(Pyramid, the_ring_holds_the_neighbours_and_nothing_beyond_the_area) {
     const TerrainTile tile = cutTile(grid, geometry, node.level, node.x, node.y);
     const std::int64_t step = std::int64_t{1} << node.level;
     for (int i = -1; i <= tile.columns; ++i) {
-      const std::int64_t column = (tile.first_column + i) * step - grid.header.longitude.first;
-      const std::int64_t row = (tile.first_row - 1) * step - grid.header.latitude.first;
-      const bool inside = column >= 0 && column < grid.header.longitude.count && row >= 0;
+      const std::int64_t column = (tile.first_column + i) * step - grid.header.x_axis.first;
+      const std::int64_t row = (tile.first_row - 1) * step - grid.header.y_axis.first;
+      const bool inside = column >= 0 && column < grid.header.x_axis.count && row >= 0;
       ASSERT_EQ(tile.isValid(i, -1), inside);
       if (inside) {
         ASSERT_EQ(tile.height(i, -1), grid.height(column, row));

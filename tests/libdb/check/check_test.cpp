@@ -103,7 +103,7 @@ TEST(CheckDatabase, one_post_changed_by_a_metre_is_one_issue_at_its_place) {
   const RawGrid grid = syntheticGrid(shape);
   const MemoryFileSystem files = buildInMemory(grid, leaves(16));
   // In the middle of a leaf, on a border of two, on a corner of four, at the area's corners.
-  const std::int64_t first_column = grid.header.longitude.first, first_row = grid.header.latitude.first;
+  const std::int64_t first_column = grid.header.x_axis.first, first_row = grid.header.y_axis.first;
   const std::int64_t border = (16 - first_column % 16) % 16 + 16, corner = (16 - first_row % 16) % 16 + 16;
   for (const auto& [column, row] : {std::pair{border + 5, corner + 7},
                                     {border, corner + 3},

@@ -373,18 +373,18 @@ const std::vector<Asset>& assets() {
       {IssueCode::kSrcVoid, against([](RawGrid& source) { source.valid.at(500) = 0; }),
        against([](RawGrid&) {})},
       {IssueCode::kSrcExtent, against([](RawGrid& source) {
-         source.header.latitude.count -= 1;
+         source.header.y_axis.count -= 1;
          const auto size =
-             static_cast<std::size_t>(source.header.latitude.count * source.header.longitude.count);
+             static_cast<std::size_t>(source.header.y_axis.count * source.header.x_axis.count);
          source.heights.resize(size);
          source.valid.resize(size);
        }),
        against([](RawGrid& source) { source.header.sources[0].name = "another name.tif"; })},
-      {IssueCode::kSrcGeoreference, against([](RawGrid& source) { source.header.longitude.phase = 0.5; }),
+      {IssueCode::kSrcGeoreference, against([](RawGrid& source) { source.header.x_axis.phase = 0.5; }),
        // A geotransform that went through text.
        against([](RawGrid& source) {
-         source.header.longitude.exact_spacing.reset();
-         source.header.longitude.spacing_degrees *= 1 + 1e-13;
+         source.header.x_axis.exact_spacing.reset();
+         source.header.x_axis.spacing *= 1 + 1e-13;
        })},
   };
   return kAssets;

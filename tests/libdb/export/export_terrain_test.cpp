@@ -26,13 +26,13 @@ TEST(ExportTerrain, the_exported_file_reads_as_the_same_grid) {
   ASSERT_TRUE(exported.ok()) << exported.error().message();
   const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
   ASSERT_TRUE(back.ok()) << back.error().message();
-  EXPECT_EQ(back.value().header.longitude, grid.header.longitude);
-  EXPECT_EQ(back.value().header.latitude, grid.header.latitude);
+  EXPECT_EQ(back.value().header.x_axis, grid.header.x_axis);
+  EXPECT_EQ(back.value().header.y_axis, grid.header.y_axis);
   EXPECT_EQ(back.value().header.quantum, grid.header.quantum);
   EXPECT_EQ(back.value().header.sources[0].geotransform, grid.header.sources[0].geotransform);
   EXPECT_EQ(back.value().header.sources[0].data_type, grid.header.sources[0].data_type);
-  for (std::int64_t row = 0; row < grid.header.latitude.count; ++row) {
-    for (std::int64_t column = 0; column < grid.header.longitude.count; ++column) {
+  for (std::int64_t row = 0; row < grid.header.y_axis.count; ++row) {
+    for (std::int64_t column = 0; column < grid.header.x_axis.count; ++column) {
       ASSERT_EQ(back.value().isValid(column, row), grid.isValid(column, row));
       if (grid.isValid(column, row)) {
         ASSERT_EQ(back.value().height(column, row), grid.height(column, row));
@@ -60,11 +60,11 @@ TEST(ExportTerrain, a_coarser_level_keeps_its_posts_in_place) {
   const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
   ASSERT_TRUE(back.ok()) << back.error().message();
   const GridGeometry fine(grid.header), coarse(back.value().header);
-  const std::int64_t first = grid.header.longitude.first;
+  const std::int64_t first = grid.header.x_axis.first;
   const std::int64_t skipped = ceilDivide(first, 4) * 4 - first;
-  EXPECT_NEAR(coarse.longitude(back.value().header.longitude.first), fine.longitude(first + skipped), 1e-10);
+  EXPECT_NEAR(coarse.longitude(back.value().header.x_axis.first), fine.longitude(first + skipped), 1e-10);
   EXPECT_EQ(back.value().height(0, 0),
-            grid.height(skipped, ceilDivide(grid.header.latitude.first, 4) * 4 - grid.header.latitude.first));
+            grid.height(skipped, ceilDivide(grid.header.y_axis.first, 4) * 4 - grid.header.y_axis.first));
 }
 
 TEST(ExportTerrain, an_existing_file_is_kept_unless_overwriting) {

@@ -68,9 +68,9 @@ TEST(ElevationSource, posts_are_pixel_centres_for_both_registrations) {
     };
     const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
     ASSERT_TRUE(grid.ok()) << grid.error().message();
-    EXPECT_EQ(grid.value().header.longitude.first, 180 * 3600 - 80);
-    EXPECT_EQ(grid.value().header.longitude.phase, 0);
-    EXPECT_EQ(grid.value().header.latitude.first, 90 * 3600 + 40);
+    EXPECT_EQ(grid.value().header.x_axis.first, 180 * 3600 - 80);
+    EXPECT_EQ(grid.value().header.x_axis.phase, 0);
+    EXPECT_EQ(grid.value().header.y_axis.first, 90 * 3600 + 40);
     EXPECT_EQ(grid.value().height(0, 0), 30) << "row 0 is the southern one";
     EXPECT_EQ(grid.value().height(4, 3), 4);
     EXPECT_EQ(grid.value().header.sources[0].point_registered, registration[0] == 'P');
@@ -84,7 +84,7 @@ TEST(ElevationSource, south_up_rasters_are_turned) {
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   ASSERT_TRUE(grid.ok());
   EXPECT_EQ(grid.value().height(0, 0), 0);
-  EXPECT_EQ(grid.value().header.latitude.first, 90 * 3600 + 40);
+  EXPECT_EQ(grid.value().header.y_axis.first, 90 * 3600 + 40);
 }
 
 TEST(ElevationSource, the_declared_sentinel_becomes_void) {

@@ -18,16 +18,16 @@ TEST(GridPlacement, spacings_that_were_rounded_in_the_file_become_exact) {
   for (const auto& [spacing, expected] :
        {Case{0.0008333333333333, {3, 1}}, Case{0.0002777777777778, {1, 1}}, Case{0.0083333333333333, {30, 1}},
         Case{1.0 / 3 / 3600, {1, 3}}, Case{0.00025, {9, 10}}}) {
-    const GridAxis axis = placeAxis(-122, spacing, 1201, -180);
+    const GridAxis axis = placeAxis(-122, spacing, 1201, kLongitudeOrigin);
     ASSERT_TRUE(axis.exact_spacing.has_value()) << spacing;
     EXPECT_EQ(*axis.exact_spacing, expected);
     EXPECT_EQ(axis.phase, 0);
-    EXPECT_EQ(postDegrees(axis, -180, axis.first), -122);
+    EXPECT_EQ(postCoordinate(axis, kLongitudeOrigin, axis.first), -122);
   }
 }
 
 TEST(GridPlacement, pixel_centred_global_grids_keep_their_half_post_phase) {
-  const GridAxis axis = placeAxis(-180 + 0.125, 0.25, 1440, -180);
+  const GridAxis axis = placeAxis(-180 + 0.125, 0.25, 1440, kLongitudeOrigin);
   EXPECT_NEAR(axis.phase, 0.5, 1e-12);
   EXPECT_EQ(axis.first, 0);
 }
@@ -37,11 +37,11 @@ RC_GTEST_PROP(GridPlacement, posts_stay_where_the_source_has_them, ()) {
                                            *rc::gen::inRange(1, 1000000) * 1e-8);
   const double first = *rc::gen::inRange(-180000000, 180000000) * 1e-6;
   const std::int64_t count = *rc::gen::inRange<std::int64_t>(2, 4000);
-  const GridAxis axis = placeAxis(first, spacing, count, -180);
+  const GridAxis axis = placeAxis(first, spacing, count, kLongitudeOrigin);
   RC_ASSERT(axis.phase >= 0 && axis.phase < 1);
   RC_ASSERT(axis.count == count);
   for (const std::int64_t k : {std::int64_t{0}, count / 2, count - 1}) {
-    const double place = postDegrees(axis, -180, axis.first + k);
+    const double place = postCoordinate(axis, kLongitudeOrigin, axis.first + k);
     RC_ASSERT(std::abs(place - (first + static_cast<double>(k) * spacing)) <= kPlacementTolerance);
   }
 }

@@ -29,21 +29,21 @@ GridHeader gridAt(const Place& place) {
   grid.quantum = {1, 1};
   grid.leaf_cells = 64;
   const std::int64_t per_degree = 3600 / place.spacing;
-  for (GridAxis* axis : {&grid.longitude, &grid.latitude}) {
+  for (GridAxis* axis : {&grid.x_axis, &grid.y_axis}) {
     axis->exact_spacing = Rational{place.spacing, 1};
-    axis->spacing_degrees = static_cast<double>(place.spacing) / 3600;
+    axis->spacing = static_cast<double>(place.spacing) / 3600;
     axis->count = 61;
   }
-  grid.longitude.first = static_cast<std::int64_t>((place.west + 180) * static_cast<double>(per_degree));
-  grid.latitude.first = static_cast<std::int64_t>((place.south + 90) * static_cast<double>(per_degree));
+  grid.x_axis.first = static_cast<std::int64_t>((place.west + 180) * static_cast<double>(per_degree));
+  grid.y_axis.first = static_cast<std::int64_t>((place.south + 90) * static_cast<double>(per_degree));
   return grid;
 }
 
 // All of a 61 x 61 grid as one tile, rough enough to have back faces.
 TerrainTile tileOf(const GridHeader& grid) {
   TerrainTile tile;
-  tile.first_column = grid.longitude.first;
-  tile.first_row = grid.latitude.first;
+  tile.first_column = grid.x_axis.first;
+  tile.first_row = grid.y_axis.first;
   tile.columns = tile.rows = 61;
   tile.heights.resize(63 * 63);
   tile.valid.assign(63 * 63, 1);

@@ -23,9 +23,9 @@ TEST(Displacement, finds_a_single_lost_peak) {
   RawGrid grid = syntheticGrid(options);
   std::fill(grid.heights.begin(), grid.heights.end(), 1000);
   // Odd in the global numbering: first + 60 or 61.
-  const std::int64_t column = 60 + (grid.header.longitude.first % 2 == 0 ? 1 : 0);
-  const std::int64_t row = 60 + (grid.header.latitude.first % 2 == 0 ? 1 : 0);
-  grid.heights[static_cast<std::size_t>(row * grid.header.longitude.count + column)] = 1100;
+  const std::int64_t column = 60 + (grid.header.x_axis.first % 2 == 0 ? 1 : 0);
+  const std::int64_t row = 60 + (grid.header.y_axis.first % 2 == 0 ? 1 : 0);
+  grid.heights[static_cast<std::size_t>(row * grid.header.x_axis.count + column)] = 1100;
   const MemoryDatabase area = makeDatabaseOf(grid, 16);
   const Camera camera = wholeAreaCamera(area.database.area(), 640, 400, 60);
   const Result<Displacement> measured = measureDisplacement(area.database, camera, 1);
