@@ -16,6 +16,7 @@
 #include "formats/node_file.h"
 #include "formats/terrain_segment.h"
 #include "libdb/access/grid_geometry.h"
+#include "libdb/access/node_position.h"
 #include "libdb/check/check.h"
 
 namespace deltaz {
@@ -27,24 +28,6 @@ struct CheckedFile {
   // One for each block, set when the block was reported as unreadable; not reported again. Bytes, not bits:
   // threads that read different blocks write them side by side.
   std::vector<std::uint8_t> damaged_blocks;
-};
-
-// Where a terrain node stands.
-struct NodePosition {
-  std::uint16_t grid = 0;
-  std::uint8_t level = 0;
-  std::int32_t x = 0, y = 0;
-  bool operator==(const NodePosition&) const = default;
-};
-
-struct NodePositionHash {
-  std::size_t operator()(const NodePosition& position) const {
-    std::uint64_t value = static_cast<std::uint32_t>(position.x);
-    value = (value << 32) | static_cast<std::uint32_t>(position.y);
-    value = (value ^ (value >> 29)) * 0xBF58476D1CE4E5B9u;
-    value += (static_cast<std::uint64_t>(position.grid) << 8 | position.level) * 0x94D049BB133111EBu;
-    return static_cast<std::size_t>(value ^ (value >> 32));
-  }
 };
 
 struct CheckContext {
@@ -74,9 +57,6 @@ struct CheckContext {
   std::unordered_map<NodePosition, std::uint32_t, NodePositionHash> positions;
 
   const NodeRecord& record(std::uint32_t number) const { return records[number - 1]; }
-  static NodePosition positionOf(const NodeRecord& record) {
-    return {record.grid, record.level, record.x, record.y};
-  }
   // The record at a position, 0 if there is none.
   std::uint32_t recordAt(const NodePosition& position) const {
     const auto found = positions.find(position);

@@ -232,7 +232,7 @@ class TreeRule {
     for (std::uint32_t number = 1; number <= count(); ++number) {
       const NodeRecord& record = context_.record(number);
       if (record.type != NodeType::kTerrain) continue;
-      if (!context_.positions.emplace(CheckContext::positionOf(record), number).second) {
+      if (!context_.positions.emplace(positionOf(record), number).second) {
         complain(IssueCode::kRefChild, number, "another node stands at the same position");
       }
     }
