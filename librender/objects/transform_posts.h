@@ -1,0 +1,73 @@
+// Four ways from a tile's posts to view space, behind one interface, so that their run time and their error
+// can be measured side by side (tests/bench/bench_transforms.cpp).
+//
+// exact   the separable WGS-84 transform in double (terrain_object_processor.h)
+// delta   the report's grid transform (5.5.2, Eq 1-5): the tile is a flat grid, the first post goes through
+//         the whole matrix, each next one adds the axis and its delta-z times the vertical axis, three
+//         multiplications and six additions a post, in single precision, so rounding accumulates
+// matrix  the same flat grid, every post through a 4 x 4 matrix in single precision
+// local   exact Earth-centred offsets from the tile's middle, rounded to single precision once per tile; the
+//         view matrix is relative to the eye, its translation is rounded to single precision once per frame
+//
+// delta and matrix leave out the curvature of the Earth inside a tile (transform_planar.h). How far off each
+// may be is proved by transform_error_bound.h. Both kinds of grid are served. All deliver doubles, so that
+// one can take the other's place. Thread-safety: const members from any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "formats/error.h"
+#include "libdb/access/grid_geometry.h"
+#include "libdb/access/terrain_tile.h"
+#include "librender/objects/transform_planar.h"
+#include "librender/scene/camera.h"
+
+namespace deltaz {
+
+enum class TransformKind : std::uint8_t { kExact, kDelta, kMatrix, kLocal };
+
+inline constexpr std::array<TransformKind, 4> kTransformKinds{TransformKind::kExact, TransformKind::kDelta,
+                                                              TransformKind::kMatrix, TransformKind::kLocal};
+
+// "exact", "delta", "matrix", "local".
+std::string_view transformName(TransformKind kind);
+
+// A tile made ready for one of the transforms: what does not depend on the view is done once.
+class TileTransform {
+ public:
+  // `tile` and `geometry` must outlive the result. Error: kInternal for a projected grid without its patches.
+  static Result<TileTransform> make(TransformKind kind, const TerrainTile& tile,
+                                    const GridGeometry& geometry);
+
+  // (U, V, W) of every post, row by row, tile.columns * tile.rows of them; `out` is overwritten. What stands
+  // at a void post is not used by any face.
+  void apply(const ViewTransform& view, std::vector<Vector3>& out) const;
+
+ private:
+  TileTransform(TransformKind kind, const TerrainTile& tile, const GridGeometry& geometry)
+      : kind_(kind), tile_(&tile), geometry_(&geometry) {}
+  void prepareDeltas();
+  void prepareHeights();
+  void prepareOffsets();
+  void applyExact(const ViewTransform& view, std::vector<Vector3>& out) const;
+  void applyDelta(const ViewTransform& view, std::vector<Vector3>& out) const;
+  void applyMatrix(const ViewTransform& view, std::vector<Vector3>& out) const;
+  void applyLocal(const ViewTransform& view, std::vector<Vector3>& out) const;
+
+  TransformKind kind_;
+  const TerrainTile* tile_;
+  const GridGeometry* geometry_;
+  PlanarGrid planar_;
+  // delta: delta-z in metres, post (0, 0) above the base; matrix: height above the base in metres.
+  std::vector<float> heights_;
+  std::vector<std::array<float, 3>> offsets_;  // local: Earth-centred metres from planar_.origin
+};
+
+// TileTransform::make and apply in one.
+Result<std::vector<Vector3>> transformPosts(TransformKind kind, const TerrainTile& tile,
+                                            const GridGeometry& geometry, const ViewTransform& view);
+
+}  // namespace deltaz

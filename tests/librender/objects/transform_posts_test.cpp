@@ -1,0 +1,167 @@
+// The four transforms against positions in extended precision, and their proved bounds.
+#include "librender/objects/transform_posts.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "librender/objects/terrain_object_processor.h"
+#include "librender/objects/transform_error_bound.h"
+#include "tests/stress/stress_grids.h"
+#include "tests/stress/true_positions.h"
+
+namespace deltaz {
+namespace {
+
+Camera cameraAt(double latitude, double longitude, double height) {
+  Camera camera;
+  camera.eye = {latitude, longitude, height};
+  camera.heading = 30;
+  camera.pitch = -25;
+  camera.roll = 5;
+  return camera;
+}
+
+// Positions of one post by the definition of each view coordinate, or a failed expectation.
+std::vector<Vector3> positionsOf(TransformKind kind, const TerrainTile& tile, const GridGeometry& geometry,
+                                 const ViewTransform& view) {
+  Result<std::vector<Vector3>> positions = transformPosts(kind, tile, geometry, view);
+  EXPECT_TRUE(positions.ok()) << transformName(kind);
+  return positions.ok() ? std::move(positions).value() : std::vector<Vector3>{};
+}
+
+TEST(TransformPosts, no_transform_is_farther_off_than_its_bound) {
+  for (const TransformKind kind : kTransformKinds) {
+    double closest = 0;
+    EXPECT_TRUE(rc::check(std::string(transformName(kind)), [&] {
+      SyntheticGridOptions options;
+      options.seed = *rc::gen::inRange<std::uint32_t>(1, 1000);
+      options.south = *rc::gen::inRange(-900, 895) / 10.0;
+      options.west = *rc::gen::inRange(-1800, 1800) / 10.0;
+      options.spacing_latitude = {*rc::gen::element<std::int64_t>(1, 3, 30), 1};
+      options.spacing_longitude = {*rc::gen::element<std::int64_t>(1, 3, 30), 1};
+      options.columns = *rc::gen::inRange(2, 60);
+      options.rows = *rc::gen::inRange(2, 60);
+      options.highest = *rc::gen::inRange(-40, 9000);
+      options.quantum = *rc::gen::element(Rational{1, 1}, Rational{1200, 3937}, Rational{1, 100});
+      const RawGrid grid = syntheticGrid(options);
+      const GridGeometry geometry(grid.header);
+      const TerrainTile tile = wholeTile(grid);
+      Camera camera =
+          cameraAt(options.south, options.west, std::pow(10.0, *rc::gen::inRange(-200, 701) / 100.0));
+      camera.heading = *rc::gen::inRange(0, 360);
+      camera.pitch = *rc::gen::inRange(-89, 90);
+      camera.field_of_view = *rc::gen::inRange(1, 170);
+      const ViewTransform view = makeViewTransform(camera, grid.header.ellipsoid);
+      const Result<std::vector<Vector3>> positions = transformPosts(kind, tile, geometry, view);
+      RC_ASSERT(positions.ok());
+      const double observed = largestError(tile, view, positions.value(), truePositions(tile, geometry));
+      const double bound = transformErrorBound(kind, tile, geometry, view);
+      RC_ASSERT(observed <= bound);
+      closest = std::max(closest, observed / bound);
+    }));
+    std::printf("%s: at most %.3f of its bound\n", std::string(transformName(kind)).c_str(), closest);
+    EXPECT_GT(closest, 0.02) << "a bound so far off says nothing";
+  }
+}
+
+TEST(TransformPosts, exact_is_the_object_processor) {
+  const RawGrid grid = syntheticGrid({});
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  const ViewTransform view = makeViewTransform(cameraAt(43.2, -79.5, 3000), grid.header.ellipsoid);
+  EXPECT_EQ(positionsOf(TransformKind::kExact, tile, geometry, view), terrainPositions(tile, geometry, view));
+}
+
+// On a flat grid small enough for the Earth's curvature not to matter, all four are the same plane.
+TEST(TransformPosts, all_agree_on_a_small_flat_tile) {
+  SyntheticGridOptions options;
+  options.columns = options.rows = 9;
+  options.spacing_latitude = options.spacing_longitude = {1, 10};  // 3 m
+  options.lowest = options.highest = 100;
+  const RawGrid grid = syntheticGrid(options);
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  const ViewTransform view =
+      makeViewTransform(cameraAt(options.south, options.west, 150), grid.header.ellipsoid);
+  const std::vector<LongVector> truth = truePositions(tile, geometry);
+  for (const TransformKind kind : kTransformKinds) {
+    EXPECT_LT(largestError(tile, view, positionsOf(kind, tile, geometry, view), truth), 2e-4)
+        << transformName(kind);
+  }
+}
+
+// What the flat grid leaves out is the sag of a tangent plane, d^2 / (2 R), and nothing much else.
+TEST(TransformPosts, the_flat_transforms_err_by_the_curvature_of_the_earth) {
+  SyntheticGridOptions options;
+  options.south = 0;
+  options.columns = options.rows = 65;
+  options.lowest = options.highest = 0;
+  const RawGrid grid = syntheticGrid(options);
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  const ViewTransform view = makeViewTransform(cameraAt(0.25, -79.7, 20000), grid.header.ellipsoid);
+  const std::vector<LongVector> truth = truePositions(tile, geometry);
+  const double half = 32 * 30 / 3600.0 * std::acos(-1.0) / 180 * 6378137;
+  const double sag = 2 * half * half / (2 * 6378137);
+  for (const TransformKind kind : {TransformKind::kDelta, TransformKind::kMatrix}) {
+    const double observed = largestError(tile, view, positionsOf(kind, tile, geometry, view), truth);
+    EXPECT_NEAR(observed, sag, 0.02 * sag) << transformName(kind);
+    EXPECT_LT(transformErrorBound(kind, tile, geometry, view), 1.2 * sag);
+  }
+  EXPECT_LT(largestError(tile, view, positionsOf(TransformKind::kLocal, tile, geometry, view), truth), 0.01);
+}
+
+TEST(TransformPosts, projected_grids_are_served_within_the_bound) {
+  const RawGrid grid = projectedGrid(100, 70, 30);
+  const GridGeometry geometry(grid.header, grid.patches);
+  const TerrainTile tile = wholeTile(grid);
+  for (const double height : {10.0, 3000.0, 1e6}) {
+    const ViewTransform view = makeViewTransform(cameraAt(46.01, 7.01, height), grid.header.ellipsoid);
+    const std::vector<LongVector> truth = truePositions(tile, geometry);
+    for (const TransformKind kind : kTransformKinds) {
+      const double observed = largestError(tile, view, positionsOf(kind, tile, geometry, view), truth);
+      const double bound = transformErrorBound(kind, tile, geometry, view);
+      EXPECT_LE(observed, bound) << transformName(kind) << " from " << height;
+    }
+  }
+}
+
+TEST(TransformPosts, a_projected_grid_without_patches_is_refused) {
+  const RawGrid grid = projectedGrid(20, 20, 30);
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  for (const TransformKind kind : kTransformKinds)
+    EXPECT_FALSE(TileTransform::make(kind, tile, geometry).ok()) << transformName(kind);
+}
+
+TEST(TransformPosts, a_tile_without_posts_has_no_positions) {
+  const RawGrid grid = syntheticGrid({});
+  const GridGeometry geometry(grid.header);
+  TerrainTile tile;
+  tile.heights.assign(4, 0);
+  tile.valid.assign(4, 0);
+  const ViewTransform view = makeViewTransform(cameraAt(43, -80, 100), grid.header.ellipsoid);
+  for (const TransformKind kind : kTransformKinds) {
+    EXPECT_TRUE(positionsOf(kind, tile, geometry, view).empty());
+    EXPECT_EQ(transformErrorBound(kind, tile, geometry, view), 0);
+  }
+}
+
+TEST(TransformPosts, coarser_levels_are_served_too) {
+  const RawGrid grid = syntheticGrid({});
+  const GridGeometry geometry(grid.header);
+  TerrainTile tile = wholeTile(grid);
+  tile.level = 2;
+  tile.first_column = tile.first_row = 0;
+  const ViewTransform view = makeViewTransform(cameraAt(-89, -179, 4000), grid.header.ellipsoid);
+  const std::vector<LongVector> truth = truePositions(tile, geometry);
+  for (const TransformKind kind : kTransformKinds) {
+    EXPECT_LE(largestError(tile, view, positionsOf(kind, tile, geometry, view), truth),
+              transformErrorBound(kind, tile, geometry, view))
+        << transformName(kind);
+  }
+}
+
+}  // namespace
+}  // namespace deltaz

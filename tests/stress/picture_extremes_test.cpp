@@ -1,0 +1,115 @@
+// Both engines on extreme grids and views: they draw, and they draw the same.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "libdb/access/ground_query.h"
+#include "librender/scene/render.h"
+#include "tests/librender/picture_comparison.h"
+#include "tests/stress/bound_check.h"
+#include "tests/stress/stress_grids.h"
+
+namespace deltaz {
+namespace {
+
+constexpr double kSnapDistance = 1.0 / 256;  // pixels
+constexpr double kDifferingShare = 0.001;    // of the pixels
+constexpr double kDepthDifference = 1e-3;    // relative
+
+RenderOptions optionsOf(const Camera& camera) {
+  RenderOptions options;
+  options.camera = camera;
+  options.tolerance = 0;
+  options.keep_triangle_ids = true;
+  return options;
+}
+
+// An eye `above` metres over the ground in the middle of the area, or over its highest post where no ground
+// is.
+Camera cameraOverMiddle(const Database& database, double above, double heading, double pitch) {
+  const AreaHeader& area = database.area();
+  Camera camera;
+  camera.eye = {(area.south + area.north) / 2, (area.west + area.east) / 2, area.highest_height};
+  const auto ground = groundHeight(database, camera.eye.latitude, camera.eye.longitude);
+  if (ground.ok() && ground.value()) camera.eye.height = *ground.value();
+  camera.eye.height += above;
+  camera.heading = heading;
+  camera.pitch = pitch;
+  camera.width = 160;
+  camera.height = 100;
+  return camera;
+}
+
+void expectSamePicture(const std::string& name, const Database& database, const Camera& camera) {
+  FrameStatistics statistics;
+  const RenderOptions options = optionsOf(camera);
+  const Result<Picture> fast = makeEngine(EngineKind::kFast)->render(database, options, statistics);
+  ASSERT_TRUE(fast.ok()) << name << ": " << fast.error().message();
+  const Result<Picture> reference = makeEngine(EngineKind::kReference)->render(database, options, statistics);
+  ASSERT_TRUE(reference.ok()) << name << ": " << reference.error().message();
+  const PictureDifference difference = comparePictures(database, camera, fast.value(), reference.value());
+  expectWithin(name + " differing pixels", static_cast<double>(difference.differing),
+               kDifferingShare * static_cast<double>(difference.pixels));
+  expectWithin(name + " pixels from an edge", difference.farthest_from_edge, kSnapDistance);
+  expectWithin(name + " relative depth", difference.largest_depth_difference, kDepthDifference);
+  for (const float depth : fast.value().depth) ASSERT_FALSE(std::isnan(depth)) << name;
+}
+
+struct BuiltGrid {
+  MemoryFileSystem files;
+  Database database;
+};
+
+BuiltGrid built(const NamedGrid& named) {
+  MemoryFileSystem files = buildInMemory(named.grid, {.leaf_cells = named.leaf_cells});
+  Result<Database> database = Database::open(files, kMemoryDatabasePath);
+  EXPECT_TRUE(database.ok());
+  return {std::move(files), std::move(database).value()};
+}
+
+class ExtremePicture : public testing::TestWithParam<NamedGrid> {};
+
+INSTANTIATE_TEST_SUITE_P(, ExtremePicture, testing::ValuesIn(extremeGrids()),
+                         [](const auto& grid) { return grid.param.name; });
+
+TEST_P(ExtremePicture, engines_agree_on_the_whole_area_and_from_above) {
+  const BuiltGrid area = built(GetParam());
+  expectSamePicture(GetParam().name + " whole area", area.database,
+                    wholeAreaCamera(area.database.area(), 160, 100, 60));
+  expectSamePicture(GetParam().name + " 500 m", area.database, cameraOverMiddle(area.database, 500, 40, -20));
+}
+
+NamedGrid hills() {
+  SyntheticGridOptions options;
+  options.south = 46.8;
+  options.west = -121.8;
+  options.spacing_latitude = options.spacing_longitude = {3, 1};
+  options.lowest = 500;
+  options.highest = 3200;
+  return {"hills", syntheticGrid(options), 16};
+}
+
+TEST(PictureExtremes, engines_agree_from_one_centimetre_to_ten_thousand_kilometres) {
+  const BuiltGrid area = built(hills());
+  for (const double above : {0.01, 0.1, 1.7, 100.0, 1e4, 1e6, 1e7}) {
+    const Camera camera = cameraOverMiddle(area.database, above, 65, above < 1e4 ? -8 : -90);
+    expectSamePicture("eye " + std::to_string(above) + " m above ground", area.database, camera);
+  }
+}
+
+TEST(PictureExtremes, engines_agree_through_needles_and_panoramas) {
+  const BuiltGrid area = built(hills());
+  for (const double field_of_view : {0.001, 0.01, 170.0, 179.0}) {
+    Camera camera = cameraOverMiddle(area.database, 2000, 20, -35);
+    camera.field_of_view = field_of_view;
+    expectSamePicture("field of view " + std::to_string(field_of_view), area.database, camera);
+  }
+  // A needle from very far away: the whole area is a few pixels at a field of view of a hundredth of a
+  // degree.
+  Camera camera = cameraOverMiddle(area.database, 1e7, 0, -90);
+  camera.field_of_view = 0.01;
+  expectSamePicture("needle from ten thousand kilometres", area.database, camera);
+}
+
+}  // namespace
+}  // namespace deltaz

@@ -1,0 +1,39 @@
+// Grids and tiles at the edges of what a database may hold.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "libdb/access/grid_geometry.h"
+#include "libdb/access/terrain_tile.h"
+#include "libdb/source/elevation_source.h"
+#include "tests/support/synthetic_grid.h"
+
+namespace deltaz {
+
+struct NamedGrid {
+  std::string name;  // letters, digits and underscores
+  RawGrid grid;
+  int leaf_cells = 16;
+};
+
+// For messages of GoogleTest.
+inline void PrintTo(const NamedGrid& named, std::ostream* out) {
+  *out << named.name;
+}
+
+// Poles, antimeridian, long thin grids, least spacing, extreme ellipsoids and quanta, voids.
+std::vector<NamedGrid> extremeGrids();
+
+// A post's spacing must be a multiple of no arc-second: the axes say only how many degrees apart posts are.
+void setPlainAxis(GridAxis& axis, const AxisOrigin& origin, double first, double spacing, std::int64_t count);
+
+// All posts of a grid as one tile of level 0, with a void ring.
+TerrainTile wholeTile(const RawGrid& grid);
+
+// A projected grid of columns x rows posts `spacing` metres apart near latitude 46 north, placed by a lattice
+// of control points on the ellipsoid's surface.
+RawGrid projectedGrid(std::int64_t columns, std::int64_t rows, double spacing);
+
+}  // namespace deltaz
