@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -191,7 +192,7 @@ class Members {
   // NaN is spelled as text.
   double sentinelOf(const Json& value, const char* name) {
     if (value.is_string() && value.get<std::string>() == "nan") return std::nan("");
-    return numberOf(value, name, -1e308, 1e308);
+    return numberOf(value, name, -std::numeric_limits<double>::max(), std::numeric_limits<double>::max());
   }
   Members object(const char* name) {
     static const Json kNothing;

@@ -41,6 +41,20 @@ std::size_t maskBytes(std::size_t posts) {
   return (posts + 7) / 8;
 }
 
+// What follows the planes: nothing, the void mask, or the mask and the kinds of voids.
+enum VoidParts : std::uint8_t { kNoVoids = 0, kMask = 1, kMaskAndKinds = 2 };
+
+std::size_t voidBytes(std::uint8_t parts, std::size_t posts) {
+  return (parts >= kMask ? maskBytes(posts) : 0) + (parts == kMaskAndKinds ? posts : 0);
+}
+
+bool hasKinds(const HeightArray& array) {
+  for (std::size_t k = 0; k < array.void_kinds.size(); ++k) {
+    if (array.valid[k] == 0 && array.void_kinds[k] != 0) return true;
+  }
+  return false;
+}
+
 struct ZstdCompressor {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
@@ -99,7 +113,9 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
   const bool has_voids =
       std::find(array.valid.begin(), array.valid.end(), std::uint8_t{0}) != array.valid.end();
 
-  std::vector<std::byte> raw((posts - 1) * planes + (has_voids ? maskBytes(posts) : 0));
+  const std::uint8_t parts = !has_voids ? kNoVoids : hasKinds(array) ? kMaskAndKinds : kMask;
+
+  std::vector<std::byte> raw((posts - 1) * planes + voidBytes(parts, posts));
   for (std::size_t k = 1; k < posts; ++k) {
     const std::uint32_t value = zigzag(differences[k]);
     for (unsigned plane = 0; plane < planes; ++plane) {
@@ -109,6 +125,13 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
   if (has_voids) {
     for (std::size_t k = 0; k < posts; ++k) {
       if (array.valid[k] != 0) raw[(posts - 1) * planes + k / 8] |= static_cast<std::byte>(1u << (k % 8));
+    }
+  }
+  if (parts == kMaskAndKinds) {
+    const std::size_t kinds = (posts - 1) * planes + maskBytes(posts);
+    for (std::size_t k = 0; k < posts; ++k) {
+      // What a valid post's kind is means nothing, and is nothing in the file.
+      if (array.valid[k] == 0) raw[kinds + k] = static_cast<std::byte>(array.void_kinds[k]);
     }
   }
 
@@ -122,7 +145,7 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
 
   ByteWriter writer;
   writer.put(static_cast<std::uint8_t>(planes));
-  writer.put(static_cast<std::uint8_t>(has_voids ? 1 : 0));
+  writer.put(parts);
   writer.put(std::uint16_t{0});
   writer.put(differences[0]);
   writer.putBytes(std::span(packed).first(size));
@@ -142,13 +165,14 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
   if (bytes.size() < 8) return damaged("it is too short");
   ByteReader reader(bytes);
   const auto planes = reader.get<std::uint8_t>();
-  const auto flags = reader.get<std::uint8_t>();
+  const auto parts = reader.get<std::uint8_t>();
   const auto reserved = reader.get<std::uint16_t>();
   const auto first = reader.get<std::int32_t>();
-  if (planes < 1 || planes > 4 || flags > 1 || reserved != 0) return damaged("its header has a wrong value");
+  if (planes < 1 || planes > 4 || parts > kMaskAndKinds || reserved != 0)
+    return damaged("its header has a wrong value");
 
   const std::size_t posts = static_cast<std::size_t>(columns) * rows;
-  const std::size_t raw_size = (posts - 1) * planes + (flags == 1 ? maskBytes(posts) : 0);
+  const std::size_t raw_size = (posts - 1) * planes + voidBytes(parts, posts);
   std::vector<std::byte> raw(raw_size);
   const std::size_t size =
       ZSTD_decompress(raw.data(), raw.size(), reader.rest().data(), reader.rest().size());
@@ -168,8 +192,9 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
   array.rows = rows;
   array.heights = sumsOf(differences, columns, rows);
   array.valid.assign(posts, 1);
-  if (flags == 1) {
-    const std::span<const std::byte> mask = std::span<const std::byte>(raw).subspan((posts - 1) * planes);
+  if (parts >= kMask) {
+    const std::span<const std::byte> mask =
+        std::span<const std::byte>(raw).subspan((posts - 1) * planes, maskBytes(posts));
     for (std::size_t k = 0; k < posts; ++k) {
       array.valid[k] = static_cast<std::uint8_t>((std::to_integer<unsigned>(mask[k / 8]) >> (k % 8)) & 1u);
     }
@@ -178,6 +203,17 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
       if (((std::to_integer<unsigned>(mask[k / 8]) >> (k % 8)) & 1u) != 0)
         return damaged("its void mask is too long");
     }
+  }
+  if (parts == kMaskAndKinds) {
+    const std::span<const std::byte> kinds =
+        std::span<const std::byte>(raw).subspan((posts - 1) * planes + maskBytes(posts));
+    array.void_kinds.resize(posts);
+    for (std::size_t k = 0; k < posts; ++k) {
+      array.void_kinds[k] = std::to_integer<std::uint8_t>(kinds[k]);
+      if (array.valid[k] != 0 && array.void_kinds[k] != 0) return damaged("a valid post has a kind of void");
+    }
+    // One array, one spelling: without kinds they are left out.
+    if (!hasKinds(array)) return damaged("it has kinds of voids, and all are the first");
   }
   return array;
 }

@@ -2,7 +2,8 @@
 // the packing, and the place where a better one will be added under a new number.
 //
 // Packing 1, "planes": differences are zigzag coded, split into byte planes, followed by the void mask as
-// bits, and compressed with zstd. Errors: kInvalid with kHgtDecode. Thread-safety: pure functions.
+// bits and the kinds of voids as bytes where there are any, and compressed with zstd. Errors: kInvalid with
+// kHgtDecode. Thread-safety: pure functions.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +22,8 @@ struct HeightArray {
   std::uint32_t columns = 0, rows = 0;
   std::vector<std::int32_t> heights;  // row by row from the south-west
   std::vector<std::uint8_t> valid;    // 1 or 0; same shape
+  // Kind of each void post (what its source held there), 0 at valid posts; same shape, or empty if all are 0.
+  std::vector<std::uint8_t> void_kinds = {};
 };
 
 // The delta-z array of `heights`: (0,0) absolute, first column against the south, all else against the west

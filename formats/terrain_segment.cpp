@@ -21,6 +21,7 @@ std::vector<std::byte> encodeTerrainBlock(const TerrainBlock& block) {
   array.rows = block.rows + 2u;
   array.heights = block.heights;
   array.valid = block.valid;
+  array.void_kinds = block.void_kinds;
   assert(array.heights.size() == static_cast<std::size_t>(array.columns) * array.rows);
   fillVoids(array);
   const std::vector<std::byte> packed = packHeights(array, DeltaPacking::kPlanes);
@@ -102,6 +103,7 @@ Result<TerrainBlock> decodeTerrainBlock(std::span<const std::byte> bytes, std::u
   }
   block.heights = std::move(array.heights);
   block.valid = std::move(array.valid);
+  block.void_kinds = std::move(array.void_kinds);
   for (unsigned i = 0; i < ancestor_count; ++i) {
     AncestorError ancestor;
     ancestor.maximum = reader.get<std::uint32_t>();

@@ -48,6 +48,9 @@ struct TerrainBlock {
   std::vector<std::int32_t> heights;
   // 1 where the post is valid, else 0; same shape.
   std::vector<std::uint8_t> valid;
+  // Kind of each void post: an index into the grid's sentinels (formats/area.h), 0 at valid posts and outside
+  // the area. Same shape, or empty if all are 0.
+  std::vector<std::uint8_t> void_kinds;
   // Leaves only: error of level 1, 2, ... over this leaf's posts.
   std::vector<AncestorError> ancestors;
 };

@@ -258,6 +258,13 @@ Result<TerrainTile> Database::terrain(const Node& node) const {
   }
   tile.heights = std::move(block.heights);
   tile.valid = std::move(block.valid);
+  tile.void_kinds = std::move(block.void_kinds);
+  for (const std::uint8_t kind : tile.void_kinds) {
+    if (kind < std::max<std::size_t>(1, geometry.header().sentinels.size())) continue;
+    return invalidError(IssueCode::kHgtDecode, terrainSegment(node.record.segment)->path(),
+                        fmt::format("block {} has a void of kind {}", node.record.block, kind),
+                        "the grid has no such sentinel");
+  }
   return tile;
 }
 

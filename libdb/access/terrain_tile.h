@@ -19,6 +19,8 @@ struct TerrainTile {
   int columns = 0, rows = 0;                     // posts, without the ring
   std::vector<std::int32_t> heights;  // (columns + 2) x (rows + 2), quanta, from the ring's south-west corner
   std::vector<std::uint8_t> valid;    // 1 or 0, same shape
+  // Index into the grid's sentinels of each void post, same shape; empty if all are 0.
+  std::vector<std::uint8_t> void_kinds;
 
   // Index of post (i, j) in heights and valid; -1 <= i <= columns, -1 <= j <= rows.
   std::size_t index(int i, int j) const {

@@ -77,6 +77,7 @@ TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level
       static_cast<std::size_t>(tile.columns + 2) * static_cast<std::size_t>(tile.rows + 2);
   tile.heights.assign(size, 0);
   tile.valid.assign(size, 0);
+  if (!grid.void_kinds.empty()) tile.void_kinds.assign(size, 0);
   const std::int64_t step = std::int64_t{1} << level;
   const GridAxis& longitude = grid.header.x_axis;
   const GridAxis& latitude = grid.header.y_axis;
@@ -85,7 +86,13 @@ TerrainTile cutTile(const RawGrid& grid, const GridGeometry& geometry, int level
     if (row < 0 || row >= latitude.count) continue;
     for (int i = -1; i <= tile.columns; ++i) {
       const std::int64_t column = (tile.first_column + i) * step - longitude.first;
-      if (column < 0 || column >= longitude.count || !grid.isValid(column, row)) continue;
+      if (column < 0 || column >= longitude.count) continue;
+      if (!grid.isValid(column, row)) {
+        if (!grid.void_kinds.empty())
+          tile.void_kinds[tile.index(i, j)] =
+              grid.void_kinds[static_cast<std::size_t>(row * longitude.count + column)];
+        continue;
+      }
       tile.heights[tile.index(i, j)] = grid.height(column, row);
       tile.valid[tile.index(i, j)] = 1;
     }

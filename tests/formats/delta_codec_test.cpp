@@ -1,5 +1,7 @@
 #include "formats/delta_codec.h"
 
+#include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -29,7 +31,19 @@ HeightArray arbitraryArray() {
   if (has_voids)
     array.valid = *rc::gen::container<std::vector<std::uint8_t>>(posts, rc::gen::element<std::uint8_t>(0, 1));
   fillVoids(array);
+  if (has_voids && *rc::gen::arbitrary<bool>()) {
+    array.void_kinds =
+        *rc::gen::container<std::vector<std::uint8_t>>(posts, rc::gen::inRange<std::uint8_t>(0, 3));
+  }
   return array;
+}
+
+// Kinds as they come back: 0 at valid posts, and none where all are 0.
+std::vector<std::uint8_t> canonicalKinds(const HeightArray& array) {
+  std::vector<std::uint8_t> kinds = array.void_kinds;
+  for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] = array.valid[k] == 0 ? kinds[k] : std::uint8_t{0};
+  const bool all_first = std::all_of(kinds.begin(), kinds.end(), [](std::uint8_t kind) { return kind == 0; });
+  return all_first ? std::vector<std::uint8_t>{} : kinds;
 }
 
 RC_GTEST_PROP(DeltaCodec, packing_reads_back_exactly, ()) {
@@ -40,6 +54,27 @@ RC_GTEST_PROP(DeltaCodec, packing_reads_back_exactly, ()) {
   RC_ASSERT(back.ok());
   RC_ASSERT(back.value().heights == array.heights);
   RC_ASSERT(back.value().valid == array.valid);
+  RC_ASSERT(back.value().void_kinds == canonicalKinds(array));
+}
+
+// The two bytes of a mask and the kinds behind it stand at the end of the frame: any other must be refused
+// or give kinds of void posts only.
+TEST(DeltaCodec, kinds_of_voids_cannot_stand_at_valid_posts_or_all_be_the_first) {
+  HeightArray array{2, 2, {5, 5, 5, 5}, {1, 0, 1, 0}, {0, 1, 0, 2}};
+  const std::vector<std::byte> bytes = packHeights(array, DeltaPacking::kPlanes);
+  ASSERT_TRUE(unpackHeights(bytes, DeltaPacking::kPlanes, 2, 2, "test").ok());
+  // A frame of stored (not compressed) bytes: 3 differences, the mask 0b0101, 4 kinds.
+  const auto stored = [&](std::array<std::uint8_t, 4> kinds) {
+    std::vector<std::byte> made(bytes.begin(), bytes.begin() + 8);
+    for (const int value : {0x28, 0xB5, 0x2F, 0xFD, 0x20, 8, 8 << 3 | 1, 0, 0, 0, 0, 0, 0b0101})
+      made.push_back(static_cast<std::byte>(value));
+    for (const std::uint8_t kind : kinds) made.push_back(static_cast<std::byte>(kind));
+    return unpackHeights(made, DeltaPacking::kPlanes, 2, 2, "test");
+  };
+  ASSERT_TRUE(stored({0, 1, 0, 2}).ok()) << stored({0, 1, 0, 2}).error().message();
+  EXPECT_EQ(stored({0, 1, 0, 2}).value().void_kinds, array.void_kinds);
+  EXPECT_FALSE(stored({1, 1, 0, 2}).ok());
+  EXPECT_FALSE(stored({0, 0, 0, 0}).ok());
 }
 
 RC_GTEST_PROP(DeltaCodec, every_prefix_is_refused, ()) {

@@ -27,6 +27,9 @@ RC_GTEST_PROP(TerrainSegment, blocks_read_back_exactly, ()) {
       sampleBlock(*rc::gen::inRange<std::uint16_t>(0, 12), *rc::gen::inRange<std::uint16_t>(0, 12));
   block.valid = *rc::gen::container<std::vector<std::uint8_t>>(block.heights.size(),
                                                                rc::gen::element<std::uint8_t>(0, 1));
+  block.void_kinds = std::vector<std::uint8_t>(block.heights.size(), 0);
+  for (std::size_t k = 0; k < block.valid.size(); k += 3)
+    block.void_kinds[k] = block.valid[k] == 0 ? std::uint8_t{2} : std::uint8_t{0};
   const Result<TerrainBlock> back = decodeTerrainBlock(encodeTerrainBlock(block), 64, "test");
   RC_ASSERT(back.ok());
   RC_ASSERT(back.value().columns == block.columns);
@@ -36,6 +39,9 @@ RC_GTEST_PROP(TerrainSegment, blocks_read_back_exactly, ()) {
   RC_ASSERT(back.value().quantum == block.quantum);
   RC_ASSERT(back.value().ancestors == block.ancestors);
   RC_ASSERT(back.value().valid == block.valid);
+  std::vector<std::uint8_t> kinds = back.value().void_kinds;
+  kinds.resize(block.heights.size(), 0);
+  RC_ASSERT(kinds == block.void_kinds);
   for (std::size_t k = 0; k < block.heights.size(); ++k) {
     if (block.valid[k] != 0) RC_ASSERT(back.value().heights[k] == block.heights[k]);
   }
