@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "librender/objects/border_stitcher.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/depth_frame_buffer.h"
 #include "librender/raster/pretiler.h"
@@ -18,16 +19,19 @@
 namespace deltaz {
 namespace {
 
-// Reads and decodes the nodes' terrain; of several errors the first node's.
-Result<std::vector<TerrainTile>> readTiles(const Database& database, const std::vector<Node>& nodes) {
-  std::vector<std::optional<Result<TerrainTile>>> read(nodes.size());
-  tbb::parallel_for(std::size_t{0}, nodes.size(),
-                    [&](std::size_t n) { read[n].emplace(database.terrain(nodes[n])); });
-  std::vector<TerrainTile> tiles;
-  tiles.reserve(nodes.size());
-  for (std::optional<Result<TerrainTile>>& result : read) {
-    if (!result->ok()) return result->error();
-    tiles.push_back(std::move(*result).value());
+// Reads and decodes the terrain of the wanted nodes; of several errors the first node's.
+Result<std::vector<std::optional<TerrainTile>>> readTiles(const Database& database,
+                                                          const std::vector<CutNode>& cut,
+                                                          const std::vector<std::uint8_t>& wanted) {
+  std::vector<std::optional<Result<TerrainTile>>> read(cut.size());
+  tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
+    if (wanted[n] != 0) read[n].emplace(database.terrain(cut[n].node));
+  });
+  std::vector<std::optional<TerrainTile>> tiles(cut.size());
+  for (std::size_t n = 0; n < cut.size(); ++n) {
+    if (!read[n]) continue;
+    if (!read[n]->ok()) return read[n]->error();
+    tiles[n] = std::move(*read[n]).value();
   }
   return tiles;
 }
@@ -37,28 +41,44 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   Stopwatch watch;
   const std::uint64_t bytes_before = database.bytesRead();
   DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
-  DELTAZ_TRY_ASSIGN(const Schedule schedule, scheduleNodes(database, environment.view, options.tolerance,
-                                                           options.fixed_level, statistics.nodes));
+  DELTAZ_TRY_ASSIGN(
+      const Schedule schedule,
+      scheduleNodes(database, environment.view, {options.tolerance, options.fixed_level}, statistics.nodes));
   statistics.level = schedule.level;
+  statistics.coarsest_level = schedule.coarsest_level;
   statistics.projected_error = schedule.projected_error;
   statistics.milliseconds.schedule = watch.lap();
 
-  DELTAZ_TRY_ASSIGN(const std::vector<TerrainTile> tiles, readTiles(database, schedule.nodes));
-  for (const TerrainTile& tile : tiles)
-    statistics.posts_decoded +=
-        static_cast<std::uint64_t>(tile.columns) * static_cast<std::uint64_t>(tile.rows);
+  const std::vector<CutNode>& cut = schedule.nodes;
+  const CutIndex index(database, cut);
+  const std::vector<std::uint8_t> wanted = nodesToProcess(database, cut, index);
+  DELTAZ_TRY_ASSIGN(const std::vector<std::optional<TerrainTile>> tiles, readTiles(database, cut, wanted));
+  for (const std::optional<TerrainTile>& tile : tiles) {
+    if (tile)
+      statistics.posts_decoded +=
+          static_cast<std::uint64_t>(tile->columns) * static_cast<std::uint64_t>(tile->rows);
+  }
   statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read = watch.lap();
 
+  std::vector<TerrainVertices> vertices(cut.size());
+  std::vector<ProcessedNode> processed(cut.size());
+  tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
+    if (!tiles[n]) return;
+    vertices[n] =
+        terrainVertices(*tiles[n], database.grid(tiles[n]->grid), environment.view, environment.light);
+    processed[n] = {&*tiles[n], &vertices[n]};
+  });
+  const BorderStitcher stitcher(database, cut, index, processed);
   const Pretiler pretiler(environment.view);
-  std::vector<PretiledNode> pretiled(tiles.size());
-  std::vector<FrameStatistics::Triangles> of_node(tiles.size());
-  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t n) {
-    const TerrainTile& tile = tiles[n];
-    const TerrainVertices vertices =
-        terrainVertices(tile, database.grid(tile.grid), environment.view, environment.light);
-    const TerrainFaces faces = terrainFaces(tile, vertices.position);
-    pretiler.process(vertices, faces, schedule.nodes[n].number, pretiled[n]);
+  std::vector<PretiledNode> pretiled(cut.size());
+  std::vector<FrameStatistics::Triangles> of_node(cut.size());
+  tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
+    if (!cut[n].in_view) return;
+    TerrainSplits splits;
+    const TerrainVertices stitched = stitcher.vertices(static_cast<std::uint32_t>(n), splits);
+    const TerrainFaces faces = terrainFaces(*tiles[n], stitched.position, splits);
+    pretiler.process(stitched, faces, cut[n].node.number, pretiled[n]);
     of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
   });
   for (const FrameStatistics::Triangles& counts : of_node) {

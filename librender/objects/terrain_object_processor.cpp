@@ -1,5 +1,9 @@
 #include "librender/objects/terrain_object_processor.h"
 
+#include <cmath>
+#include <numbers>
+#include <span>
+
 #include "libdb/access/vertex_normals.h"
 #include "librender/scene/synthetic_color.h"
 
@@ -20,10 +24,24 @@ struct Axis {
   Axis(const Vector3& vector, const Vector3& eye) : m(vector), t(dot(vector, eye)) {}
 };
 
+// Posts of a projected grid do not separate into rows and columns.
+std::vector<Vector3> projectedPositions(const TerrainTile& tile, const GridGeometry& geometry,
+                                        const ViewTransform& view) {
+  std::vector<Vector3> position;
+  const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
+  position.reserve(places.size());
+  for (int j = 0; j < tile.rows; ++j) {
+    for (int i = 0; i < tile.columns; ++i)
+      position.push_back(view.toView(places[position.size()].at(geometry.metres(tile.height(i, j)))));
+  }
+  return position;
+}
+
 }  // namespace
 
 std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
                                       const ViewTransform& view) {
+  if (!geometry.isGeodetic()) return projectedPositions(tile, geometry, view);
   const std::vector<RowConstants> rows = geometry.rowConstantsOf(tile.level, rowRange(tile));
   const std::vector<ColumnConstants> columns = geometry.columnConstantsOf(tile.level, columnRange(tile));
   const Axis u(view.forward, view.eye), v(view.right * view.pixels, view.eye),
@@ -53,24 +71,29 @@ std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometr
 
 std::vector<LinearColor> terrainColors(const TerrainTile& tile, const GridGeometry& geometry,
                                        const Light& light) {
-  const std::vector<RowConstants> rows = geometry.rowConstantsOf(tile.level, rowRange(tile));
-  const std::vector<ColumnConstants> columns = geometry.columnConstantsOf(tile.level, columnRange(tile));
   const std::vector<Vector3> normals = vertexNormals(tile, geometry);
+  const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
   std::vector<LinearColor> color;
   color.reserve(normals.size());
+  SurfacePoint point;
   for (int j = 0; j < tile.rows; ++j) {
-    const RowConstants& row = rows[static_cast<std::size_t>(j)];
-    const double latitude = geometry.latitude((tile.first_row + j) * (std::int64_t{1} << tile.level));
-    const double hemisphere = latitude < 0 ? -1 : 1;
-    SurfacePoint point;
-    point.snow_line = snowLine(latitude);
     for (int i = 0; i < tile.columns; ++i) {
-      const ColumnConstants& column = columns[static_cast<std::size_t>(i)];
       const Vector3& normal = normals[color.size()];
-      const Vector3 north{-row.s * column.cosine, -row.s * column.sine, row.b};
+      const Vector3& up = places[color.size()].up;
+      const double across = std::hypot(up.x, up.y);
+      // On a geodetic grid a row has one latitude.
+      if (i == 0 || !geometry.isGeodetic()) {
+        const double latitude =
+            geometry.isGeodetic() ? geometry.latitude((tile.first_row + j) * (std::int64_t{1} << tile.level))
+                                  : std::atan2(up.z, across) * (180.0 / std::numbers::pi);
+        point.snow_line = snowLine(latitude);
+      }
+      // North, in the plane of the axis and the vertical.
+      const Vector3 north =
+          across > 0 ? Vector3{-up.z * up.x / across, -up.z * up.y / across, across} : Vector3{-up.z, 0, 0};
       point.height = geometry.metres(tile.height(i, j));
-      point.upness = dot(normal, upVector(row, column));
-      point.poleward = hemisphere * dot(normal, north);
+      point.upness = dot(normal, up);
+      point.poleward = (up.z < 0 ? -1 : 1) * dot(normal, north);
       color.push_back(naturalColor(point) * light.intensity(normal));
     }
   }
@@ -83,7 +106,18 @@ TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geo
           terrainColors(tile, geometry, light)};
 }
 
-TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position) {
+namespace {
+
+// The points on the border edge that starts at post `edge` of a side.
+std::span<const std::uint32_t> pointsOn(const std::vector<std::vector<std::uint32_t>>& side, int edge) {
+  if (side.empty()) return {};
+  return side[static_cast<std::size_t>(edge)];
+}
+
+}  // namespace
+
+TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position,
+                          const TerrainSplits& splits) {
   TerrainFaces faces;
   if (tile.columns < 2 || tile.rows < 2) return faces;
   faces.front.reserve(static_cast<std::size_t>(tile.columns - 1) * static_cast<std::size_t>(tile.rows - 1) *
@@ -96,7 +130,24 @@ TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& p
       faces.front.push_back({{a, b, c}, identity});
     }
   };
+  // A face with points on its edges a-b and b-c: a fan from c through those on a-b, and one from the last of
+  // them through those on b-c.
+  const auto add_split = [&](std::uint32_t a, std::span<const std::uint32_t> on_ab, std::uint32_t b,
+                             std::span<const std::uint32_t> on_bc, std::uint32_t c, std::uint32_t identity) {
+    std::uint32_t last = a;
+    for (const std::uint32_t point : on_ab) {
+      add(last, point, c, identity);
+      last = point;
+    }
+    std::uint32_t from = b;
+    for (const std::uint32_t point : on_bc) {
+      add(last, from, point, identity);
+      from = point;
+    }
+    add(last, from, c, identity);
+  };
   const auto columns = static_cast<std::uint32_t>(tile.columns);
+  std::vector<std::uint32_t> north, west;
   for (int j = 0; j + 1 < tile.rows; ++j) {
     for (int i = 0; i + 1 < tile.columns; ++i) {
       const std::uint32_t south_west =
@@ -105,8 +156,30 @@ TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& p
       const std::uint32_t north_east = north_west + 1;
       const std::uint32_t cell =
           static_cast<std::uint32_t>(j) * (columns - 1) + static_cast<std::uint32_t>(i);
-      if (tile.bottomFaceValid(i, j)) add(south_west, south_east, north_east, cell << 1);
-      if (tile.topFaceValid(i, j)) add(south_west, north_east, north_west, cell << 1 | 1);
+      if (tile.bottomFaceValid(i, j)) {
+        add_split(south_west, j == 0 ? pointsOn(splits.south, i) : std::span<const std::uint32_t>{},
+                  south_east,
+                  i + 2 == tile.columns ? pointsOn(splits.east, j) : std::span<const std::uint32_t>{},
+                  north_east, cell << 1);
+      }
+      if (tile.topFaceValid(i, j)) {
+        // Its border edges run westwards and southwards.
+        north.clear();
+        west.clear();
+        if (j + 2 == tile.rows) {
+          const auto points = pointsOn(splits.north, i);
+          north.assign(points.rbegin(), points.rend());
+        }
+        if (i == 0) {
+          const auto points = pointsOn(splits.west, j);
+          west.assign(points.rbegin(), points.rend());
+        }
+        if (north.empty() && west.empty()) {
+          add(south_west, north_east, north_west, cell << 1 | 1);
+        } else {
+          add_split(north_east, north, north_west, west, south_west, cell << 1 | 1);
+        }
+      }
     }
   }
   return faces;

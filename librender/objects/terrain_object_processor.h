@@ -22,8 +22,8 @@
 
 namespace deltaz {
 
-// Posts row by row from the south-west, columns * rows of them; what stands at a void post is not used by any
-// face.
+// Posts row by row from the south-west, columns * rows of them, then points that split border faces; what
+// stands at a void post is not used by any face.
 struct TerrainVertices {
   int columns = 0, rows = 0;
   std::vector<Vector3> position;   // (U, V, W)
@@ -54,8 +54,16 @@ inline bool isBackFacing(const Vector3& a, const Vector3& b, const Vector3& c) {
   return !(dot(cross(b - a, c - a), a) < 0);
 }
 
+// Points that split the faces along a tile's border (border_stitcher.h), as indices of vertices behind the
+// posts. One list for each border edge of a side, from west to east or south to north; no lists at all for a
+// side that has no points.
+struct TerrainSplits {
+  std::vector<std::vector<std::uint32_t>> south, east, north, west;
+};
+
 // Faces whose three posts are valid, sorted into front and back, cells row by row, bottom face before top
-// face.
-TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position);
+// face; a face that is split keeps its identity in all its parts.
+TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position,
+                          const TerrainSplits& splits = {});
 
 }  // namespace deltaz

@@ -67,7 +67,6 @@ Result<Displacement> measureDisplacement(const Database& database, const Camera&
   double sum = 0;
   for (int grid = 0; grid < database.gridCount(); ++grid) {
     const GridGeometry& geometry = database.grid(grid);
-    const EllipsoidShape& ellipsoid = geometry.header().ellipsoid;
     const int grid_level = std::min(level, geometry.header().level_count - 1);
     const std::int64_t step = std::int64_t{1} << grid_level;
     DELTAZ_TRY_ASSIGN(const FullResolution full, FullResolution::read(database, grid));
@@ -76,8 +75,8 @@ Result<Displacement> measureDisplacement(const Database& database, const Camera&
     // The posts of one face of the cell whose south-west post is (column, row) at full resolution.
     const auto measure_face = [&](std::int64_t column, std::int64_t row, bool top) {
       const auto corner = [&](std::int64_t di, std::int64_t dj) {
-        return toEarthCentred(ellipsoid, {geometry.latitude(row + dj), geometry.longitude(column + di),
-                                          geometry.metres(full.height(column + di, row + dj))});
+        return geometry.placeAt(column + di, row + dj)
+            .at(geometry.metres(full.height(column + di, row + dj)));
       };
       const Vector3 a = corner(0, 0), b = top ? corner(step, step) : corner(step, 0),
                     c = top ? corner(0, step) : corner(step, step);
@@ -85,15 +84,13 @@ Result<Displacement> measureDisplacement(const Database& database, const Camera&
       for (std::int64_t dj = 0; dj <= step; ++dj) {
         for (std::int64_t di = top ? 0 : dj; di <= (top ? dj : step); ++di) {
           if (!full.isValid(column + di, row + dj)) continue;
-          const double latitude = geometry.latitude(row + dj), longitude = geometry.longitude(column + di);
-          const Vector3 post = toEarthCentred(
-              ellipsoid, {latitude, longitude, geometry.metres(full.height(column + di, row + dj))});
+          const PostPlace place = geometry.placeAt(column + di, row + dj);
+          const Vector3 post = place.at(geometry.metres(full.height(column + di, row + dj)));
           const Point at = see(view, post);
           if (!at.in_picture) continue;
-          const Vector3 up = upVector(rowConstants(ellipsoid, latitude), columnConstants(longitude));
-          const double rise = dot(normal, a - post) / dot(normal, up);
+          const double rise = dot(normal, a - post) / dot(normal, place.up);
           if (!std::isfinite(rise)) continue;  // a face of no extent, at a pole
-          const Point drawn = see(view, post + up * rise);
+          const Point drawn = see(view, post + place.up * rise);
           const double pixels = drawn.in_front ? std::hypot(drawn.j - at.j, drawn.i - at.i) : HUGE_VAL;
           result.largest_pixels = std::max(result.largest_pixels, pixels);
           result.largest_metres = std::max(result.largest_metres, std::abs(rise));

@@ -41,19 +41,25 @@ struct Box {
   int first_j, last_j, first_i, last_i;
 };
 
+// GeographicLib's own formula where the grid is geodetic; the control points' where it is not.
+Vector3 positionOf(const GridGeometry& geometry, const TerrainTile& tile, int i, int j, double height) {
+  const std::int64_t step = std::int64_t{1} << tile.level;
+  const std::int64_t column = (tile.first_column + i) * step, row = (tile.first_row + j) * step;
+  if (!geometry.isGeodetic()) return geometry.placeAt(column, row).at(height);
+  return toEarthCentred(geometry.header().ellipsoid,
+                        {geometry.latitude(row), geometry.longitude(column), height});
+}
+
 std::vector<Vertex> verticesOf(const TerrainTile& tile, const GridGeometry& geometry,
                                const Environment& environment) {
   const std::vector<LinearColor> colors = terrainColors(tile, geometry, environment.light);
-  const std::int64_t step = std::int64_t{1} << tile.level;
   std::vector<Vertex> vertices;
   vertices.reserve(colors.size());
   for (int j = 0; j < tile.rows; ++j) {
     for (int i = 0; i < tile.columns; ++i) {
-      const GeodeticPoint point{geometry.latitude((tile.first_row + j) * step),
-                                geometry.longitude((tile.first_column + i) * step),
-                                geometry.metres(tile.height(i, j))};
-      vertices.push_back({environment.view.toView(toEarthCentred(geometry.header().ellipsoid, point)),
-                          colors[vertices.size()]});
+      const double height = geometry.metres(tile.height(i, j));
+      vertices.push_back(
+          {environment.view.toView(positionOf(geometry, tile, i, j, height)), colors[vertices.size()]});
     }
   }
   return vertices;

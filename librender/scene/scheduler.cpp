@@ -3,57 +3,140 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "librender/scene/strip_error.h"
 #include "librender/scene/view_volume.h"
 
 namespace deltaz {
 namespace {
 
-// Walks the tree, keeping the terrain nodes in view.
-class Walk {
+class Scheduler {
  public:
-  Walk(const Database& database, const ViewTransform& view, FrameStatistics::Nodes& statistics)
-      : database_(database), volume_(view), statistics_(statistics) {}
+  Scheduler(const Database& database, const ViewTransform& view, const ScheduleOptions& options,
+            FrameStatistics::Nodes& statistics)
+      : database_(database), view_(view), options_(options), statistics_(statistics), volume_(view) {}
 
-  // Appends the children of `parent` that are in view; clusters are replaced by their own children.
-  Status expand(const Node& parent, std::vector<Node>& nodes) {
-    DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database_.children(parent));
-    for (const Node& child : children) {
-      ++statistics_.visited;
-      if (child.record.isEmpty()) continue;
-      if (volume_.isOutside(child.centroid, child.radius())) {
-        ++statistics_.out_of_view;
-      } else if (child.record.type == NodeType::kTerrain) {
-        nodes.push_back(child);
-      } else if (child.record.type == NodeType::kCluster) {
-        DELTAZ_TRY(expand(child, nodes));
+  Result<Schedule> run() {
+    DELTAZ_TRY_ASSIGN(const Node root, database_.root());
+    std::vector<Node> waiting = {root};
+    DELTAZ_TRY(refine(waiting));
+    if (options_.fixed_level < 0 && options_.test_strips) DELTAZ_TRY(refineBesideStrips());
+    return finish();
+  }
+
+ private:
+  // Error bounds of what the node itself draws, in pixels.
+  double ownError(const Node& node) const {
+    if (node.record.level == 0) return 0;
+    const double worse = node.geometricError();
+    return projectedErrorBound(view_, node.centroid, node.radius(), worse);
+  }
+
+  bool isFineEnough(const CutNode& candidate) const {
+    const Node& node = candidate.node;
+    if (node.record.type != NodeType::kTerrain) return false;
+    if (node.record.level == 0) return true;
+    if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
+    if (!candidate.in_view) return true;
+    return options_.tolerance > 0 && ownError(node) <= options_.tolerance;
+  }
+
+  // Replaces the waiting nodes by what is fine enough below them, and appends that to the cut.
+  Status refine(std::vector<Node>& waiting) {
+    while (!waiting.empty()) {
+      const Node parent = waiting.back();
+      waiting.pop_back();
+      DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database_.children(parent));
+      for (const Node& child : children) {
+        ++statistics_.visited;
+        if (child.record.isEmpty()) continue;
+        const bool terrain = child.record.type == NodeType::kTerrain;
+        if (!terrain && child.record.type != NodeType::kCluster) continue;
+        CutNode candidate{child, true};
+        if (terrain && options_.cull && volume_.isOutside(child.centroid, child.radius())) {
+          ++statistics_.out_of_view;
+          candidate.in_view = false;
+        }
+        if (isFineEnough(candidate)) {
+          nodes_.push_back(candidate);
+        } else {
+          waiting.push_back(child);
+        }
       }
     }
     return Success{};
   }
 
- private:
-  const Database& database_;
-  ViewVolume volume_;
-  FrameStatistics::Nodes& statistics_;
-};
-
-int coarsestLevel(const std::vector<Node>& nodes) {
-  int level = 0;
-  for (const Node& node : nodes) level = std::max<int>(level, node.record.level);
-  return level;
-}
-
-double largestProjectedError(const ViewTransform& view, const std::vector<Node>& nodes) {
-  double largest = 0;
-  for (const Node& node : nodes) {
-    // A leaf is what the error is measured against.
-    if (node.record.level == 0) continue;
-    largest =
-        std::max(largest, projectedErrorBound(view, node.centroid, node.radius(), node.geometricError()));
+  // Refines coarser neighbours until every strip in view is good enough. A child's error may exceed its
+  // parent's, so all strips are looked at again after each round; every round refines, so rounds end.
+  Status refineBesideStrips() {
+    for (;;) {
+      const CutIndex index(database_, nodes_);
+      const StripErrors strips(database_, nodes_, index);
+      std::vector<bool> refined(nodes_.size(), false);
+      bool any = false;
+      for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+        if (!nodes_[n].in_view) continue;
+        std::uint32_t coarser = CutIndex::kNone;
+        const double added = strips.strip(n, coarser);
+        if (coarser == CutIndex::kNone ||
+            (options_.tolerance > 0 && stripError(n, added) <= options_.tolerance))
+          continue;
+        refined[coarser] = true;
+        any = true;
+      }
+      if (!any) return Success{};
+      std::vector<Node> waiting;
+      std::vector<CutNode> kept;
+      for (std::size_t n = 0; n < nodes_.size(); ++n) {
+        if (refined[n]) {
+          waiting.push_back(nodes_[n].node);
+        } else {
+          kept.push_back(std::move(nodes_[n]));
+        }
+      }
+      nodes_ = std::move(kept);
+      DELTAZ_TRY(refine(waiting));
+    }
   }
-  return largest;
-}
+
+  double stripError(std::uint32_t n, double added) const {
+    const Node& node = nodes_[n].node;
+    const double own = node.record.level == 0 ? 0 : node.geometricError();
+    return projectedErrorBound(view_, node.centroid, node.radius(), own + added);
+  }
+
+  Schedule finish() {
+    std::sort(nodes_.begin(), nodes_.end(),
+              [](const CutNode& a, const CutNode& b) { return a.node.number < b.node.number; });
+    Schedule schedule;
+    const CutIndex index(database_, nodes_);
+    const StripErrors strips(database_, nodes_, index);
+    bool first = true;
+    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+      if (!nodes_[n].in_view) continue;
+      const int level = nodes_[n].node.record.level;
+      schedule.level = first ? level : std::min(schedule.level, level);
+      schedule.coarsest_level = std::max(schedule.coarsest_level, level);
+      first = false;
+      ++statistics_.drawn;
+      std::uint32_t coarser = CutIndex::kNone;
+      const double added = strips.strip(n, coarser);
+      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n].node),
+                                           coarser == CutIndex::kNone ? 0 : stripError(n, added)});
+    }
+    schedule.nodes = std::move(nodes_);
+    return schedule;
+  }
+
+  const Database& database_;
+  const ViewTransform& view_;
+  const ScheduleOptions& options_;
+  FrameStatistics::Nodes& statistics_;
+  ViewVolume volume_;
+  std::vector<CutNode> nodes_;
+};
 
 }  // namespace
 
@@ -72,34 +155,9 @@ double projectedErrorBound(const ViewTransform& view, const Vector3& centre, dou
   return view.pixels * error * std::sqrt(1 + tangent_squared) / depth;
 }
 
-Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view, double tolerance,
-                               int fixed_level, FrameStatistics::Nodes& statistics) {
-  Walk walk(database, view, statistics);
-  DELTAZ_TRY_ASSIGN(const Node root, database.root());
-  std::vector<Node> nodes;
-  DELTAZ_TRY(walk.expand(root, nodes));
-
-  Schedule schedule;
-  for (schedule.level = coarsestLevel(nodes);; --schedule.level) {
-    schedule.projected_error = largestProjectedError(view, nodes);
-    const bool enough =
-        fixed_level >= 0 ? schedule.level <= fixed_level : schedule.projected_error <= tolerance;
-    if (schedule.level == 0 || (enough && (fixed_level >= 0 || tolerance > 0))) break;
-    // Nodes of grids that have no level this coarse stay until their own turn.
-    std::vector<Node> finer;
-    for (const Node& node : nodes) {
-      if (node.record.level < schedule.level) {
-        finer.push_back(node);
-      } else {
-        DELTAZ_TRY(walk.expand(node, finer));
-      }
-    }
-    nodes = std::move(finer);
-  }
-  std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.number < b.number; });
-  statistics.drawn = nodes.size();
-  schedule.nodes = std::move(nodes);
-  return schedule;
+Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view,
+                               const ScheduleOptions& options, FrameStatistics::Nodes& statistics) {
+  return Scheduler(database, view, options, statistics).run();
 }
 
 }  // namespace deltaz

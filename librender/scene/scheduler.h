@@ -1,25 +1,38 @@
-// Chooses what is drawn: the nodes in the view volume at one level of detail for the whole view, the coarsest
-// at which the geometric error of every node in view projects to no more than the tolerance.
+// Chooses what is drawn: a cut through the area's quadtrees in which every node in view has errors that
+// project to no more than the tolerance, whatever the levels of its neighbours.
 //
-// Reads only the node pages of nodes in view and of their siblings. Nodes come in the order of their record
-// numbers. One level for the whole view needs no stitching: neighbours share their border posts.
+// A node is refined while its geometric or its coverage error projects to more than the tolerance, and while
+// the eye is inside its bounding sphere and its error is not zero. Nodes out of view stay as they are. Where
+// two levels meet, the finer node's border follows the coarser one's edges (objects/border_stitcher.h), so
+// along that strip both levels' errors add: the coarser node is refined until the sum projects to no more
+// than the tolerance, too. Neighbours may differ by any number of levels.
 //
-// Not yet tested: the coverage error. Databases of version 1 leave it unknown (infinite), so a coarse level
-// may end short of the area's edge and of voids by up to one of its cells.
+// Reads only the node pages of nodes in the cut and of their siblings. Thread-safety: pure functions.
 #pragma once
 
 #include <vector>
 
 #include "formats/error.h"
 #include "libdb/access/database.h"
+#include "librender/scene/cut.h"
 #include "librender/scene/render.h"
 
 namespace deltaz {
 
 struct Schedule {
-  int level = 0;
-  double projected_error = 0;  // pixels: the largest bound of the nodes drawn
-  std::vector<Node> nodes;
+  int level = 0, coarsest_level = 0;  // of the nodes in view
+  double projected_error = 0;         // pixels: the largest bound of what is drawn, strips included
+  // The cut, in the order of the record numbers. It covers all of the area that has heights.
+  std::vector<CutNode> nodes;
+};
+
+struct ScheduleOptions {
+  double tolerance = 1;  // pixels; 0 for full resolution
+  int fixed_level = -1;  // >= 0: this level everywhere (at most the coarsest)
+  // For tests that must see the contract fail: leaves the strips untested.
+  bool test_strips = true;
+  // For tests of culling: false keeps everything in view.
+  bool cull = true;
 };
 
 // Bound, in pixels, of how far a displacement of at most `error` metres of points inside the sphere moves
@@ -28,9 +41,8 @@ struct Schedule {
 // tangents.
 double projectedErrorBound(const ViewTransform& view, const Vector3& centre, double radius, double error);
 
-// Counts visited, out_of_view and drawn nodes in `statistics`. `tolerance` in pixels, 0 for full resolution;
-// `fixed_level` >= 0 overrides it (and is at most the coarsest level).
-Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view, double tolerance,
-                               int fixed_level, FrameStatistics::Nodes& statistics);
+// Counts visited, out_of_view and drawn nodes in `statistics`.
+Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view,
+                               const ScheduleOptions& options, FrameStatistics::Nodes& statistics);
 
 }  // namespace deltaz

@@ -12,54 +12,66 @@
 namespace deltaz {
 namespace {
 
-// The definition, from all nodes of a level: the largest bound of those in view.
-double boundOfLevel(const Database& database, const ViewTransform& view, int level,
-                    std::set<std::uint32_t>& in_view) {
-  const ViewVolume volume(view);
-  double largest = 0;
-  in_view.clear();
-  const Result<std::vector<Node>> nodes = nodesOfLevel(database, 0, level);
-  EXPECT_TRUE(nodes.ok());
-  for (const Node& node : nodes.value()) {
-    if (node.record.isEmpty() || volume.isOutside(node.centroid, node.radius())) continue;
-    in_view.insert(node.number);
-    if (level > 0)
-      largest =
-          std::max(largest, projectedErrorBound(view, node.centroid, node.radius(), node.geometricError()));
+// What a view draws, by record number.
+std::set<std::uint32_t> drawnNodes(const Schedule& schedule) {
+  std::set<std::uint32_t> drawn;
+  for (const CutNode& node : schedule.nodes) {
+    if (node.in_view) drawn.insert(node.node.number);
   }
-  return largest;
+  return drawn;
 }
 
-TEST(Scheduler, picks_the_coarsest_level_the_tolerance_allows) {
+// Level-0 cells the nodes of a cut span, area ends included.
+double cellsOf(const Database& database, const std::vector<CutNode>& cut) {
+  double cells = 0;
+  for (const CutNode& node : cut) {
+    const double side = database.grid(0).header().leaf_cells * std::ldexp(1.0, node.node.record.level);
+    cells += side * side;
+  }
+  return cells;
+}
+
+TEST(Scheduler, cuts_the_area_once_and_keeps_every_node_in_view_within_the_tolerance) {
   const MemoryDatabase area = makeDatabase(smallArea());
   const int levels = area.database.grid(0).header().level_count;
   ASSERT_GT(levels, 2);
+  std::vector<CutNode> whole;
+  for (const Node& node : nodesOfLevel(area.database, 0, levels - 1).value()) whole.push_back({node, true});
   std::set<int> chosen;
-  for (const double above : {500.0, 20000.0, 150000.0, 1000000.0}) {
+  for (const double above : {50.0, 500.0, 20000.0, 150000.0, 1000000.0}) {
     const Camera camera =
-        cameraOver(area.database, 0.5, -0.5, above, 0, above < 1000 ? -5.0 : -80.0, 640, 400);
+        cameraOver(area.database, 0.5, 0.2, above, 0, above < 1000 ? -5.0 : -80.0, 640, 400);
     const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
     for (const double tolerance : {0.1, 1.0, 4.0, 1000.0}) {
       FrameStatistics::Nodes counts;
-      const Result<Schedule> schedule = scheduleNodes(area.database, view, tolerance, -1, counts);
+      const Result<Schedule> schedule = scheduleNodes(area.database, view, {tolerance}, counts);
       ASSERT_TRUE(schedule.ok());
-      const int level = schedule.value().level;
-      chosen.insert(level);
-      std::set<std::uint32_t> in_view;
-      EXPECT_LE(boundOfLevel(area.database, view, level, in_view), tolerance);
       EXPECT_LE(schedule.value().projected_error, tolerance);
-      // Nothing in view is missing. (A parent out of view may have spared the walk a node whose sphere is
-      // not.)
-      std::set<std::uint32_t> drawn;
-      for (const Node& node : schedule.value().nodes) drawn.insert(node.number);
-      EXPECT_TRUE(std::includes(in_view.begin(), in_view.end(), drawn.begin(), drawn.end()));
-      EXPECT_EQ(counts.drawn, drawn.size());
-      if (level + 1 < levels) {
-        EXPECT_GT(boundOfLevel(area.database, view, level + 1, in_view), tolerance);
+      EXPECT_EQ(counts.drawn, drawnNodes(schedule.value()).size());
+      for (const CutNode& node : schedule.value().nodes) {
+        if (!node.in_view) continue;
+        chosen.insert(node.node.record.level);
+        if (node.node.record.level == 0) continue;
+        const double error = std::max(node.node.geometricError(), node.node.coverageError());
+        EXPECT_LE(projectedErrorBound(view, node.node.centroid, node.node.radius(), error), tolerance);
       }
+      // Nodes at area ends span more than the area, the same at every level only if the whole is a multiple.
+      EXPECT_LE(cellsOf(area.database, schedule.value().nodes), cellsOf(area.database, whole));
     }
   }
   EXPECT_GT(chosen.size(), 1u);
+}
+
+TEST(Scheduler, uses_coarser_nodes_farther_away) {
+  SyntheticGridOptions options = smallArea();
+  options.columns = options.rows = 385;
+  const MemoryDatabase area = makeDatabase(options);
+  const ViewTransform view =
+      makeViewTransform(cameraOver(area.database, 0.5, 0.05, 30, 0, -3, 640, 400), EllipsoidShape{});
+  FrameStatistics::Nodes counts;
+  const Schedule schedule = scheduleNodes(area.database, view, {4.0}, counts).value();
+  EXPECT_EQ(schedule.level, 0);
+  EXPECT_GT(schedule.coarsest_level, 0);
 }
 
 TEST(Scheduler, zero_tolerance_is_full_resolution_and_order_is_that_of_records) {
@@ -67,13 +79,28 @@ TEST(Scheduler, zero_tolerance_is_full_resolution_and_order_is_that_of_records) 
   const ViewTransform view =
       makeViewTransform(wholeAreaCamera(area.database.area(), 320, 200, 60), EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Result<Schedule> schedule = scheduleNodes(area.database, view, 0, -1, counts);
+  const Result<Schedule> schedule = scheduleNodes(area.database, view, {0.0}, counts);
   ASSERT_TRUE(schedule.ok());
-  EXPECT_EQ(schedule.value().level, 0);
-  const std::vector<Node>& nodes = schedule.value().nodes;
-  EXPECT_TRUE(std::is_sorted(nodes.begin(), nodes.end(),
-                             [](const Node& a, const Node& b) { return a.number < b.number; }));
+  EXPECT_EQ(schedule.value().coarsest_level, 0);
+  const std::vector<CutNode>& nodes = schedule.value().nodes;
+  EXPECT_TRUE(std::is_sorted(nodes.begin(), nodes.end(), [](const CutNode& a, const CutNode& b) {
+    return a.node.number < b.node.number;
+  }));
   EXPECT_EQ(nodes.size(), nodesOfLevel(area.database, 0, 0).value().size());
+}
+
+TEST(Scheduler, an_eye_inside_a_node_sees_it_at_full_resolution) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  for (const double above : {-200.0, -1.0, 0.01, 2.0}) {
+    const ViewTransform view =
+        makeViewTransform(cameraOver(area.database, 0.43, 0.61, above, 30, -5, 320, 200), EllipsoidShape{});
+    FrameStatistics::Nodes counts;
+    const Schedule schedule = scheduleNodes(area.database, view, {1.0}, counts).value();
+    for (const CutNode& node : schedule.nodes) {
+      if (!node.in_view || length(node.node.centroid - view.eye) > node.node.radius()) continue;
+      EXPECT_EQ(node.node.record.level, 0);
+    }
+  }
 }
 
 TEST(Scheduler, does_not_visit_what_is_out_of_view) {
@@ -81,9 +108,8 @@ TEST(Scheduler, does_not_visit_what_is_out_of_view) {
   const ViewTransform away =
       makeViewTransform(cameraOver(area.database, 0.5, -2, 100, 180, 0, 320, 200), EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Result<Schedule> schedule = scheduleNodes(area.database, away, 0, -1, counts);
+  const Result<Schedule> schedule = scheduleNodes(area.database, away, {0.0}, counts);
   ASSERT_TRUE(schedule.ok());
-  EXPECT_TRUE(schedule.value().nodes.empty());
   EXPECT_EQ(counts.drawn, 0u);
   EXPECT_LT(counts.visited, 6u);
 }

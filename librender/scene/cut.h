@@ -1,0 +1,60 @@
+// A cut through the quadtrees of an area: nodes of any levels that together cover everything once. What a
+// view draws is the part of its cut that is in view; the rest is there so that borders between levels come
+// out the same whatever the view shows.
+//
+// Indices are global ones of level 0: node (x, y) of level k spans posts x * leaf * 2^k .. (x + 1) * leaf *
+// 2^k. Thread-safety: const members from any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "libdb/access/database.h"
+#include "libdb/access/node_position.h"
+
+namespace deltaz {
+
+struct CutNode {
+  Node node;
+  bool in_view = false;  // drawn; the others lie outside the view volume
+};
+
+enum class Side : std::uint8_t { kSouth, kEast, kNorth, kWest };
+inline constexpr Side kSides[] = {Side::kSouth, Side::kEast, Side::kNorth, Side::kWest};
+
+// Finds the nodes of a cut by place. Refers to the vector it was made of, which must not change meanwhile.
+class CutIndex {
+ public:
+  CutIndex(const Database& database, const std::vector<CutNode>& nodes);
+
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  // The node at exactly this position, kNone if the cut has none there.
+  std::uint32_t at(const NodePosition& position) const;
+  // The node that holds level-0 cell (column, row) of a grid.
+  std::uint32_t holding(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
+  // The node of the same or a coarser level that borders all of a side; kNone if there are finer ones or
+  // none.
+  std::uint32_t acrossWhole(const NodePosition& position, Side side) const;
+  // Posts of the finer nodes across a side that lie strictly between two posts of it, ascending: indices
+  // along the side.
+  void postsAcross(const NodePosition& position, Side side, std::int64_t from, std::int64_t to,
+                   std::vector<std::int64_t>& posts) const;
+
+ private:
+  void addPosts(const NodePosition& position, Side facing, std::int64_t from, std::int64_t to,
+                std::vector<std::int64_t>& posts) const;
+  struct Grid {
+    int levels = 1;
+    std::int64_t leaf_cells = 1;
+  };
+  std::vector<Grid> grids_;
+  std::unordered_map<NodePosition, std::uint32_t, NodePositionHash> places_;
+};
+
+// The position of the node of the same level beyond a side.
+NodePosition beyond(const NodePosition& position, Side side);
+
+}  // namespace deltaz

@@ -1,0 +1,133 @@
+#include "librender/scene/strip_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace deltaz {
+namespace {
+
+// The bow is measured in the middle of edges at both ends of a node; between them it changes little.
+constexpr double kBowMargin = 1.25;
+
+// How far the middle of the chord between two posts lies beside the post between them, across the normal and
+// across the edge.
+double sidewaysBow(const GridGeometry& geometry, std::int64_t column, std::int64_t row, std::int64_t dx,
+                   std::int64_t dy) {
+  const Vector3 from = geometry.placeAt(column, row).foot, to = geometry.placeAt(column + dx, row + dy).foot;
+  const PostPlace middle = geometry.placeAt(column + dx / 2, row + dy / 2);
+  const Vector3 edge = to - from;
+  const Vector3 across = cross(edge, middle.up);
+  const double size = length(across);
+  return size > 0 ? std::abs(dot((from + to) * 0.5 - middle.foot, across)) / size : 0;
+}
+
+// The steepest slope the normals below a node can have: the angle of the cone's axis against the vertical of
+// the node's middle, and the cone.
+double steepestSlope(const Node& node) {
+  const auto& packed = node.record.mean_normal;
+  const Vector3 axis{static_cast<double>(packed[0]), static_cast<double>(packed[1]),
+                     static_cast<double>(packed[2])};
+  if (!(length(axis) > 0)) return std::numeric_limits<double>::infinity();
+  // Geocentric instead of geodetic, and the middle's vertical for all of the node: a degree more than both.
+  const Vector3 up = node.centroid;
+  const double tilt = std::atan2(length(cross(axis, up)), dot(axis, up));
+  const double angle = tilt + node.record.cone_half_angle * (std::numbers::pi / 65535.0) + 0.0175;
+  return angle < std::numbers::pi / 2 ? std::tan(angle) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+StripErrors::StripErrors(const Database& database, const std::vector<CutNode>& nodes, const CutIndex& index)
+    : database_(database), nodes_(nodes), index_(index) {}
+
+double StripErrors::bow(const NodeRecord& record) const {
+  const GridGeometry& geometry = database_.grid(record.grid);
+  const GridHeader& header = geometry.header();
+  const std::int64_t step = std::int64_t{1} << record.level;
+  const std::int64_t span = header.leaf_cells * step;
+  const auto inside = [&](std::int64_t post, const GridAxis& axis) {
+    return std::clamp(post, axis.first, std::max(axis.first, axis.first + axis.count - 1 - step));
+  };
+  const std::int64_t west = inside(record.x * span, header.x_axis),
+                     east = inside((record.x + 1) * span - step, header.x_axis);
+  const std::int64_t south = inside(record.y * span, header.y_axis),
+                     north = inside((record.y + 1) * span - step, header.y_axis);
+  double largest = 0;
+  for (const std::int64_t column : {west, east}) {
+    for (const std::int64_t row : {south, north}) {
+      largest = std::max(largest, sidewaysBow(geometry, column, row, step, 0));
+      // The meridians of a geodetic grid are plane curves that hold the normals: no bow.
+      if (!geometry.isGeodetic()) largest = std::max(largest, sidewaysBow(geometry, column, row, 0, step));
+    }
+  }
+  return largest * kBowMargin;
+}
+
+double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const {
+  // Coarser and coarser nodes touch the ends of edges, so this ends; a damaged tree must not make it go on.
+  if (depth > 32) return std::numeric_limits<double>::infinity();
+  std::uint32_t coarsest = CutIndex::kNone;
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    const std::uint32_t node = index_.holding(grid, column - (quadrant & 1), row - ((quadrant >> 1) & 1));
+    if (node == CutIndex::kNone) continue;
+    const NodeRecord& record = nodes_[node].node.record;
+    const std::int64_t mask = (std::int64_t{1} << record.level) - 1;
+    if ((column & mask) == 0 && (row & mask) == 0) continue;
+    if (coarsest == CutIndex::kNone || record.level > nodes_[coarsest].node.record.level) coarsest = node;
+  }
+  if (coarsest == CutIndex::kNone) return 0;
+  const Node& node = nodes_[coarsest].node;
+  const std::int64_t step = std::int64_t{1} << node.record.level, mask = step - 1;
+  // The edge runs along the axis on which the post is none of the node's.
+  const bool along_x = (column & mask) != 0;
+  const std::int64_t begin = floorDivide(along_x ? column : row, step) * step;
+  const auto end_displacement = [&](std::int64_t at) {
+    return along_x ? displacement(grid, at, row, depth + 1) : displacement(grid, column, at, depth + 1);
+  };
+  return node.geometricError() + std::max(end_displacement(begin), end_displacement(begin + step));
+}
+
+double StripErrors::strip(std::uint32_t node, std::uint32_t& worst) const {
+  const NodeRecord& record = nodes_[node].node.record;
+  const NodePosition position = positionOf(record);
+  const std::int64_t step = std::int64_t{1} << record.level;
+  const std::int64_t span = database_.grid(record.grid).header().leaf_cells * step;
+  const std::int64_t west = record.x * span, south = record.y * span;
+  double largest = 0;
+  worst = CutIndex::kNone;
+  for (const Side side : kSides) {
+    const std::uint32_t across = index_.acrossWhole(position, side);
+    if (across == CutIndex::kNone) continue;
+    const Node& coarse = nodes_[across].node;
+    if (coarse.record.level <= record.level) continue;
+    const bool along_x = side == Side::kSouth || side == Side::kNorth;
+    const std::int64_t coarse_step = std::int64_t{1} << coarse.record.level;
+    const std::int64_t from = along_x ? west : south;
+    const std::int64_t line = side == Side::kSouth   ? south
+                              : side == Side::kNorth ? south + span
+                              : side == Side::kWest  ? west
+                                                     : west + span;
+    // Of the coarse edges along this side only the outer ends can be moved by others.
+    double of_ends = 0;
+    for (const std::int64_t end :
+         {floorDivide(from, coarse_step) * coarse_step, ceilDivide(from + span, coarse_step) * coarse_step}) {
+      of_ends = std::max(of_ends, along_x ? displacement(record.grid, end, line, 0)
+                                          : displacement(record.grid, line, end, 0));
+    }
+    const double moved = coarse.geometricError() + of_ends;
+    // Sideways moves tilt: by the steepest slope of the node, and by what the strip itself leans.
+    const double cell = length(database_.grid(record.grid).placeAt(west, south).foot -
+                               database_.grid(record.grid).placeAt(west, south + step).foot);
+    const double sideways = bow(coarse.record);
+    const double tilted = sideways > 0 ? sideways * (steepestSlope(nodes_[node].node) + moved / cell) : 0;
+    if (const double sum = moved + tilted; sum > largest || worst == CutIndex::kNone) {
+      largest = sum;
+      worst = across;
+    }
+  }
+  return largest;
+}
+
+}  // namespace deltaz

@@ -1,0 +1,268 @@
+#include "tests/librender/cut_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "librender/scene/view_volume.h"
+#include "tests/librender/test_databases.h"
+
+namespace deltaz {
+namespace {
+
+using Post = std::array<std::int64_t, 2>;
+
+struct EdgeKey {
+  std::uint16_t grid;
+  Post from, to;
+  bool operator==(const EdgeKey&) const = default;
+};
+struct EdgeHash {
+  std::size_t operator()(const EdgeKey& edge) const {
+    std::uint64_t value = edge.grid;
+    for (const std::int64_t part : {edge.from[0], edge.from[1], edge.to[0], edge.to[1]})
+      value = (value ^ static_cast<std::uint64_t>(part)) * 0x9E3779B97F4A7C15u + (value >> 31);
+    return static_cast<std::size_t>(value);
+  }
+};
+
+bool sameBits(const Vector3& a, const Vector3& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+std::string nameOf(const Post& post) {
+  return fmt::format("({}, {})", post[0], post[1]);
+}
+
+// Whether the cut draws a face over the place, given in level-0 posts, of a grid.
+bool drawnAt(const CutMesh& mesh, const CutIndex& index, std::uint16_t grid, double x, double y) {
+  const std::uint32_t n =
+      index.holding(grid, static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
+  if (n == CutIndex::kNone || !mesh.tiles[n]) return false;
+  const TerrainTile& tile = *mesh.tiles[n];
+  const double step = std::ldexp(1.0, tile.level);
+  const double u = x / step - static_cast<double>(tile.first_column),
+               v = y / step - static_cast<double>(tile.first_row);
+  const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+  if (i < 0 || j < 0 || i + 1 >= tile.columns || j + 1 >= tile.rows) return false;
+  return u - i > v - j ? tile.bottomFaceValid(i, j) : tile.topFaceValid(i, j);
+}
+
+}  // namespace
+
+CutMesh meshOfCut(const Database& database, const Schedule& schedule, const ViewTransform& view) {
+  CutMesh mesh;
+  mesh.cut = schedule.nodes;
+  const CutIndex index(database, mesh.cut);
+  std::vector<TerrainVertices> vertices(mesh.cut.size());
+  mesh.tiles.resize(mesh.cut.size());
+  std::vector<ProcessedNode> processed(mesh.cut.size());
+  for (std::size_t n = 0; n < mesh.cut.size(); ++n) {
+    Result<TerrainTile> tile = database.terrain(mesh.cut[n].node);
+    if (!tile.ok()) throw std::runtime_error(tile.error().message());
+    mesh.tiles[n] = std::move(tile).value();
+    const GridGeometry& geometry = database.grid(mesh.tiles[n]->grid);
+    // Colours do not matter here, and normals cost most.
+    vertices[n] = {
+        mesh.tiles[n]->columns, mesh.tiles[n]->rows, terrainPositions(*mesh.tiles[n], geometry, view), {}};
+    vertices[n].color.resize(vertices[n].position.size());
+    processed[n] = {&*mesh.tiles[n], &vertices[n]};
+  }
+  const BorderStitcher stitcher(database, mesh.cut, index, processed);
+  for (std::uint32_t n = 0; n < mesh.cut.size(); ++n) {
+    MeshNode node;
+    node.cut_node = n;
+    TerrainSplits splits;
+    node.vertices = stitcher.vertices(n, splits, &node.posts);
+    // A tile seen from far above its middle has only front faces; positions in plan do for that.
+    std::vector<Vector3> plan;
+    for (const Post& post : node.posts)
+      plan.push_back({-1, static_cast<double>(post[0] - node.posts[0][0]),
+                      static_cast<double>(post[1] - node.posts[0][1])});
+    for (Vector3& p : plan) p.x = 1;
+    const TerrainFaces faces = terrainFaces(*mesh.tiles[n], plan, splits);
+    if (faces.back_facing == 0) {
+      for (const TerrainFace& face : faces.front) node.faces.push_back(face.vertex);
+    } else {
+      // Turned the other way by convention: mirror and take them all.
+      for (Vector3& p : plan) p.y = -p.y;
+      for (const TerrainFace& face : terrainFaces(*mesh.tiles[n], plan, splits).front)
+        node.faces.push_back(face.vertex);
+    }
+    mesh.nodes.push_back(std::move(node));
+  }
+  return mesh;
+}
+
+std::string findCrack(const Database& database, const CutMesh& mesh) {
+  const CutIndex index(database, mesh.cut);
+  std::unordered_map<EdgeKey, int, EdgeHash> edges;
+  std::map<std::pair<std::uint16_t, Post>, Vector3> border_vertices;
+  double doubled_area = 0, expected = 0;
+  for (const MeshNode& node : mesh.nodes) {
+    const NodeRecord& record = mesh.cut[node.cut_node].node.record;
+    const TerrainTile& tile = *mesh.tiles[node.cut_node];
+    const std::int64_t span =
+        database.grid(record.grid).header().leaf_cells * (std::int64_t{1} << record.level);
+    std::vector<bool> seen(node.posts.size(), false);
+    for (const auto& face : node.faces) {
+      std::int64_t turn = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Post &a = node.posts[face[k]], &b = node.posts[face[(k + 1) % 3]];
+        if (a == b) return fmt::format("a face has an edge of no length at {}", nameOf(a));
+        turn += a[0] * b[1] - b[0] * a[1];
+        if (++edges[{record.grid, a, b}] > 1)
+          return fmt::format("the edge {} {} is used twice in one direction", nameOf(a), nameOf(b));
+        const bool on_border = a[0] % span == 0 || a[1] % span == 0;
+        if (!on_border || seen[face[k]]) continue;
+        seen[face[k]] = true;
+        const Vector3& position = node.vertices.position[face[k]];
+        const auto [found, fresh] = border_vertices.emplace(std::pair{record.grid, a}, position);
+        if (!fresh && !sameBits(found->second, position)) {
+          return fmt::format("post {} stands at two places, {} m apart", nameOf(a),
+                             length(found->second - position));
+        }
+      }
+      if (turn <= 0) return fmt::format("a face at {} is turned over in plan", nameOf(node.posts[face[0]]));
+      doubled_area += static_cast<double>(turn);
+    }
+    const double cell = std::ldexp(1.0, 2 * record.level);
+    for (int j = 0; j + 1 < tile.rows; ++j) {
+      for (int i = 0; i + 1 < tile.columns; ++i)
+        expected +=
+            cell * (static_cast<int>(tile.bottomFaceValid(i, j)) + static_cast<int>(tile.topFaceValid(i, j)));
+    }
+  }
+  if (doubled_area != expected) return fmt::format("{} half cells are drawn, not {}", doubled_area, expected);
+  for (const auto& [edge, uses] : edges) {
+    if (edges.contains({edge.grid, edge.to, edge.from})) continue;
+    // Nothing may be drawn on its right.
+    const double dx = static_cast<double>(edge.to[0] - edge.from[0]),
+                 dy = static_cast<double>(edge.to[1] - edge.from[1]), size = std::hypot(dx, dy);
+    const double x = static_cast<double>(edge.from[0] + edge.to[0]) / 2 + dy / size * 1e-3,
+                 y = static_cast<double>(edge.from[1] + edge.to[1]) / 2 - dx / size * 1e-3;
+    if (drawnAt(mesh, index, edge.grid, x, y))
+      return fmt::format("nothing meets the edge {} {}, though something is drawn beyond it",
+                         nameOf(edge.from), nameOf(edge.to));
+  }
+  return {};
+}
+
+FullResolution::FullResolution(const Database& database, int grid)
+    : columns_(database.grid(grid).columnsAt(0)), rows_(database.grid(grid).rowsAt(0)) {
+  heights_.assign(static_cast<std::size_t>(columns_.size() * rows_.size()), 0);
+  valid_.assign(heights_.size(), 0);
+  for (const Node& node : nodesOfLevel(database, grid, 0).value()) {
+    const TerrainTile tile = database.terrain(node).value();
+    for (int j = 0; j < tile.rows; ++j) {
+      for (int i = 0; i < tile.columns; ++i) {
+        const auto at = static_cast<std::size_t>((tile.first_row + j - rows_.begin) * columns_.size() +
+                                                 (tile.first_column + i - columns_.begin));
+        heights_[at] = tile.height(i, j);
+        valid_[at] = tile.isValid(i, j) ? 1 : 0;
+      }
+    }
+  }
+}
+
+bool FullResolution::isValid(std::int64_t column, std::int64_t row) const {
+  return valid_[static_cast<std::size_t>((row - rows_.begin) * columns_.size() +
+                                         (column - columns_.begin))] != 0;
+}
+std::int32_t FullResolution::height(std::int64_t column, std::int64_t row) const {
+  return heights_[static_cast<std::size_t>((row - rows_.begin) * columns_.size() +
+                                           (column - columns_.begin))];
+}
+
+ContractFinding measureContract(const Database& database, const CutMesh& mesh, const FullResolution& full,
+                                const ViewTransform& view) {
+  ContractFinding finding;
+  // Positions are in view space already; V and W carry the pixels.
+  const auto to_view = [&](const Vector3& direction) {
+    return Vector3{dot(view.forward, direction), dot(view.right, direction) * view.pixels,
+                   dot(view.down, direction) * view.pixels};
+  };
+  const CutIndex index(database, mesh.cut);
+  for (const MeshNode& node : mesh.nodes) {
+    const CutNode& cut = mesh.cut[node.cut_node];
+    if (!cut.in_view) continue;
+    const GridGeometry& geometry = database.grid(cut.node.record.grid);
+    const std::size_t own_posts =
+        static_cast<std::size_t>(node.vertices.columns) * static_cast<std::size_t>(node.vertices.rows);
+    const std::int64_t span = geometry.header().leaf_cells * (std::int64_t{1} << cut.node.record.level);
+    if (cut.node.record.level == 0) {
+      bool beside_coarser = false;
+      for (const Side side : kSides) {
+        const std::uint32_t across = index.acrossWhole(positionOf(cut.node.record), side);
+        beside_coarser =
+            beside_coarser || (across != CutIndex::kNone && mesh.cut[across].node.record.level > 0);
+      }
+      if (!beside_coarser) continue;  // full resolution, untouched
+    }
+    for (const auto& face : node.faces) {
+      const Post &a = node.posts[face[0]], &b = node.posts[face[1]], &c = node.posts[face[2]];
+      bool strip = false;
+      for (const std::uint32_t vertex : face) {
+        const Post& post = node.posts[vertex];
+        strip = strip || vertex >= own_posts || post[0] % span == 0 || post[1] % span == 0;
+      }
+      const Vector3 &pa = node.vertices.position[face[0]], &pb = node.vertices.position[face[1]],
+                    &pc = node.vertices.position[face[2]];
+      const Vector3 normal = cross(pb - pa, pc - pa);
+      const auto side_of = [](const Post& from, const Post& to, std::int64_t x, std::int64_t y) {
+        return (to[0] - from[0]) * (y - from[1]) - (to[1] - from[1]) * (x - from[0]);
+      };
+      const auto [west, east] = std::minmax({a[0], b[0], c[0]});
+      const auto [south, north] = std::minmax({a[1], b[1], c[1]});
+      for (std::int64_t y = south; y <= north; ++y) {
+        for (std::int64_t x = west; x <= east; ++x) {
+          if (side_of(a, b, x, y) < 0 || side_of(b, c, x, y) < 0 || side_of(c, a, x, y) < 0) continue;
+          if (!full.isValid(x, y)) continue;
+          const PostPlace place = geometry.placeAt(x, y);
+          const Vector3 post = view.toView(place.at(geometry.metres(full.height(x, y))));
+          if (post.x <= kHither || std::abs(post.y / post.x) > view.width / 2.0 ||
+              std::abs(post.z / post.x) > view.height / 2.0)
+            continue;
+          const Vector3 up = to_view(place.up);
+          const double rise = dot(normal, pa - post) / dot(normal, up);
+          if (!std::isfinite(rise)) continue;
+          const Vector3 drawn = post + up * rise;
+          const double pixels = drawn.x > 0 ? std::hypot(drawn.y / drawn.x - post.y / post.x,
+                                                         drawn.z / drawn.x - post.z / post.x)
+                                            : HUGE_VAL;
+          finding.worst_pixels = std::max(finding.worst_pixels, pixels);
+          if (strip) finding.worst_strip_pixels = std::max(finding.worst_strip_pixels, pixels);
+          ++finding.posts;
+        }
+      }
+    }
+  }
+  return finding;
+}
+
+Camera randomView(const Database& database, std::mt19937& random, int width, int height) {
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const int kind = static_cast<int>(random() % 10);
+  const double margin = kind == 0 ? 0.5 : 0;
+  const double above = kind == 1   ? -uniform(0.1, 300)                  // in the ground
+                       : kind == 2 ? std::pow(10.0, uniform(5, 7))       // far away
+                       : kind == 3 ? 0.01                                // an ant's view
+                                   : std::pow(10.0, uniform(0.2, 4.7));  // walkers and aircraft
+  double pitch = uniform(-60, 15);
+  if (kind == 2 || kind == 4) pitch = -90;
+  if (kind == 5) pitch = 90;
+  Camera camera = cameraOver(database, uniform(-margin, 1 + margin), uniform(-margin, 1 + margin), above,
+                             uniform(0, 360), pitch, width, height);
+  camera.eye.latitude = std::clamp(camera.eye.latitude, -90.0, 90.0);
+  if (kind == 6) camera.eye.height = database.area().lowest_height - uniform(0, 500);  // under water
+  camera.field_of_view = kind == 7 ? uniform(1, 10) : uniform(30, 110);
+  camera.roll = kind == 8 ? uniform(-180, 180) : 0;
+  return camera;
+}
+
+}  // namespace deltaz

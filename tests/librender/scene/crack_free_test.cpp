@@ -1,0 +1,226 @@
+// Cuts of many views have no cracks and keep the LOD contract.
+//
+// DELTAZ_VIEWS sets the number of views an area (the soak run has 2,000; by default few enough for every
+// day).
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "tests/librender/cut_checks.h"
+#include "tests/librender/test_databases.h"
+
+namespace deltaz {
+namespace {
+
+int viewsPerArea(int by_default) {
+  const char* const wanted = std::getenv("DELTAZ_VIEWS");
+  return wanted != nullptr ? std::atoi(wanted) : by_default;
+}
+
+struct Outcome {
+  int views = 0;
+  std::uint64_t faces = 0;
+  int largest_level_difference = 0;
+  double worst_pixels = 0, worst_strip_pixels = 0;
+  std::string crack;
+};
+
+int levelDifference(const Database& database, const std::vector<CutNode>& cut) {
+  const CutIndex index(database, cut);
+  int largest = 0;
+  for (const CutNode& node : cut) {
+    for (const Side side : kSides) {
+      const std::uint32_t across = index.acrossWhole(positionOf(node.node.record), side);
+      if (across != CutIndex::kNone)
+        largest = std::max(largest, cut[across].node.record.level - node.node.record.level);
+    }
+  }
+  return largest;
+}
+
+Outcome tryViews(const Database& database, int views, bool measure_contract, ScheduleOptions options = {}) {
+  Outcome outcome;
+  std::vector<FullResolution> full;
+  if (measure_contract) full.emplace_back(database, 0);
+  std::mt19937 random(7);
+  for (; outcome.views < views; ++outcome.views) {
+    const Camera camera = randomView(database, random, 256, 192);
+    const ViewTransform view = makeViewTransform(camera, database.area().grids.front().ellipsoid);
+    FrameStatistics::Nodes counts;
+    const Result<Schedule> schedule = scheduleNodes(database, view, options, counts);
+    if (!schedule.ok()) throw std::runtime_error(schedule.error().message());
+    EXPECT_TRUE(!options.test_strips || options.tolerance == 0 ||
+                schedule.value().projected_error <= options.tolerance);
+    const CutMesh mesh = meshOfCut(database, schedule.value(), view);
+    outcome.largest_level_difference =
+        std::max(outcome.largest_level_difference, levelDifference(database, mesh.cut));
+    for (const MeshNode& node : mesh.nodes) outcome.faces += node.faces.size();
+    if (outcome.crack = findCrack(database, mesh); !outcome.crack.empty()) {
+      std::printf("view %d: eye %.9f,%.9f,%.4f look %.4f,%.4f,%.4f fov %.4f\n", outcome.views,
+                  camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading, camera.pitch,
+                  camera.roll, camera.field_of_view);
+      return outcome;
+    }
+    if (!measure_contract) continue;
+    const ContractFinding finding = measureContract(database, mesh, full.front(), view);
+    if (finding.worst_pixels > options.tolerance && options.test_strips) {
+      std::printf("view %d: eye %.9f,%.9f,%.4f look %.4f,%.4f,%.4f fov %.4f: %.3f px\n", outcome.views,
+                  camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading, camera.pitch,
+                  camera.roll, camera.field_of_view, finding.worst_pixels);
+    }
+    outcome.worst_pixels = std::max(outcome.worst_pixels, finding.worst_pixels);
+    outcome.worst_strip_pixels = std::max(outcome.worst_strip_pixels, finding.worst_strip_pixels);
+  }
+  return outcome;
+}
+
+void print(const char* area, const Outcome& outcome) {
+  std::printf("%s: %d views, %.0f faces a view, level difference up to %d, worst %.3f px, strips %.3f px\n",
+              area, outcome.views, static_cast<double>(outcome.faces) / outcome.views,
+              outcome.largest_level_difference, outcome.worst_pixels, outcome.worst_strip_pixels);
+}
+
+struct SyntheticCase {
+  const char* name;
+  SyntheticGridOptions options;
+  int leaf_cells;
+};
+
+std::vector<SyntheticCase> syntheticCases() {
+  SyntheticGridOptions rough = smallArea();
+  rough.columns = rough.rows = 193;
+  SyntheticGridOptions voids = rough;
+  voids.voids = VoidPattern::kHole;
+  SyntheticGridOptions scattered = rough;
+  scattered.voids = VoidPattern::kScattered;
+  SyntheticGridOptions odd = rough;  // ends between the multiples of every level
+  odd.south = 59.9125;
+  odd.columns = 203;
+  odd.rows = 151;
+  SyntheticGridOptions pole = rough;
+  pole.south = 89.0;
+  pole.spacing_latitude = {30, 1};
+  pole.spacing_longitude = {300, 1};
+  pole.rows = 121;
+  SyntheticGridOptions flat = rough;  // zero errors beside rough ones: large level differences
+  flat.voids = VoidPattern::kWestHalf;
+  flat.lowest = 0;
+  flat.highest = 3;
+  return {{"rough", rough, 16}, {"hole", voids, 8}, {"scattered voids", scattered, 8},
+          {"odd ends", odd, 8}, {"pole", pole, 16}, {"flat", flat, 8}};
+}
+
+TEST(CrackFree, no_view_of_a_synthetic_area_has_a_crack) {
+  for (const SyntheticCase& area : syntheticCases()) {
+    const MemoryDatabase memory = makeDatabase(area.options, area.leaf_cells);
+    const Outcome outcome = tryViews(memory.database, viewsPerArea(60), true);
+    print(area.name, outcome);
+    EXPECT_EQ(outcome.crack, "") << area.name;
+    EXPECT_LE(outcome.worst_pixels, 1) << area.name;
+  }
+}
+
+// Country where both errors meet: in the west posts that only level 1 has are raised by `rise`, up to and on
+// the line between two coarse nodes; in the east, posts that only level 0 has. Level 2 is good enough in the
+// west and level 1 in the east, each by itself; beside the line the east's face errs by its own error and by
+// half of what the line moved.
+RawGrid countryOfTwoErrors(std::int32_t rise) {
+  SyntheticGridOptions options = smallArea();
+  options.west = -122;
+  options.columns = 129;
+  options.rows = 65;
+  RawGrid grid = syntheticGrid(options);
+  for (std::int64_t row = 0; row < options.rows; ++row) {
+    for (std::int64_t column = 0; column < options.columns; ++column) {
+      const bool level_1 = column % 2 == 0 && row % 2 == 0, level_2 = column % 4 == 0 && row % 4 == 0;
+      const bool raised = column <= 64 ? level_1 && !level_2 : !level_1;
+      grid.heights[static_cast<std::size_t>(row * options.columns + column)] = 500 + (raised ? rise : 0);
+    }
+  }
+  return grid;
+}
+
+TEST(CrackFree, strips_break_the_contract_unless_they_are_tested) {
+  const MemoryDatabase memory = makeDatabaseOf(countryOfTwoErrors(24), 8);
+  // From the south, 200 km away, where a pixel is 27 m.
+  Camera camera{{45.0, -121.95, 3000}, 0, 0, 0, 2, 256, 192};
+  const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
+  const FullResolution full(memory.database, 0);
+  std::array<ContractFinding, 2> findings;
+  for (const bool tested : {false, true}) {
+    ScheduleOptions options;
+    options.test_strips = tested;
+    FrameStatistics::Nodes counts;
+    const Schedule schedule = scheduleNodes(memory.database, view, options, counts).value();
+    const CutMesh mesh = meshOfCut(memory.database, schedule, view);
+    EXPECT_EQ(findCrack(memory.database, mesh), "");
+    findings[tested ? 1 : 0] = measureContract(memory.database, mesh, full, view);
+  }
+  std::printf("strips untested: %.3f px, tested: %.3f px, over %llu posts\n", findings[0].worst_strip_pixels,
+              findings[1].worst_pixels, static_cast<unsigned long long>(findings[1].posts));
+  EXPECT_GT(findings[0].worst_strip_pixels, 1);
+  EXPECT_LE(findings[1].worst_pixels, 1);
+  EXPECT_GT(findings[1].posts, 1000u);
+}
+
+// What the mesh checker must find.
+TEST(CrackFree, a_vertex_out_of_place_and_a_missing_face_are_found) {
+  const MemoryDatabase memory = makeDatabase(smallArea(), 16);
+  const Camera camera = cameraOver(memory.database, 0.2, 0.2, 400, 45, -10, 256, 192);
+  const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
+  FrameStatistics::Nodes counts;
+  const Schedule schedule = scheduleNodes(memory.database, view, {}, counts).value();
+  const CutMesh mesh = meshOfCut(memory.database, schedule, view);
+  ASSERT_EQ(findCrack(memory.database, mesh), "");
+  CutMesh moved = mesh;
+  moved.nodes.front().vertices.position.front().z += 1e-9;
+  EXPECT_NE(findCrack(memory.database, moved), "");
+  CutMesh holed = mesh;
+  holed.nodes.back().faces.pop_back();
+  EXPECT_NE(findCrack(memory.database, holed), "");
+  CutMesh doubled = mesh;
+  doubled.nodes.back().faces.push_back(doubled.nodes.back().faces.front());
+  EXPECT_NE(findCrack(memory.database, doubled), "");
+}
+
+// Unstitched, the same cuts do crack: the checker is not blind to what it is there for.
+TEST(CrackFree, levels_side_by_side_without_stitching_are_found) {
+  const MemoryDatabase memory = makeDatabase(smallArea(), 16);
+  const Camera camera = cameraOver(memory.database, 0.2, 0.2, 400, 45, -10, 256, 192);
+  const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
+  FrameStatistics::Nodes counts;
+  const Schedule schedule = scheduleNodes(memory.database, view, {}, counts).value();
+  ASSERT_GT(levelDifference(memory.database, schedule.nodes), 0);
+  CutMesh mesh = meshOfCut(memory.database, schedule, view);
+  for (MeshNode& node : mesh.nodes) {
+    const TerrainTile& tile = *mesh.tiles[node.cut_node];
+    node.vertices.position = terrainPositions(tile, memory.database.grid(0), view);
+    node.posts.resize(node.vertices.position.size());
+    std::vector<Vector3> plan;
+    for (const auto& post : node.posts)
+      plan.push_back({1, static_cast<double>(post[0] - node.posts[0][0]),
+                      -static_cast<double>(post[1] - node.posts[0][1])});
+    node.faces.clear();
+    for (const TerrainFace& face : terrainFaces(tile, plan).front) node.faces.push_back(face.vertex);
+  }
+  EXPECT_NE(findCrack(memory.database, mesh), "");
+}
+
+TEST(CrackFree, no_view_of_a_real_area_has_a_crack) {
+  const char* const folder = std::getenv("DELTAZ_TEST_DATA");
+  std::vector<std::string> files = {std::string(DELTAZ_SAMPLES) + "/mt_rainier.tif"};
+  if (folder != nullptr) files.push_back(std::string(folder) + "/dem/mt_everest_90m.tif");
+  for (const std::string& file : files) {
+    const std::optional<MemoryDatabase> area = databaseOfFile(file);
+    if (!area) continue;
+    const Outcome outcome = tryViews(area->database, viewsPerArea(4), true);
+    print(file.c_str(), outcome);
+    EXPECT_EQ(outcome.crack, "") << file;
+    EXPECT_LE(outcome.worst_pixels, 1) << file;
+  }
+}
+
+}  // namespace
+}  // namespace deltaz
