@@ -8,7 +8,7 @@ namespace deltaz {
 namespace {
 
 // Grows with every change of what is hashed, so that digests of different definitions never agree by chance.
-constexpr std::uint32_t kDigestVersion = 1;
+constexpr std::uint32_t kDigestVersion = 2;
 
 // Values as little-endian bytes, one after the other.
 class DigestBytes {
@@ -60,6 +60,19 @@ void addGrid(DigestBytes& bytes, const GridHeader& grid) {
   bytes.add(grid.leaf_cells);
   bytes.add(grid.level_count);
   bytes.add(grid.normal_exponent);
+  bytes.add(static_cast<std::uint32_t>(grid.sentinels.size()));
+  for (const double sentinel : grid.sentinels) bytes.add(sentinel);
+}
+
+// The positions of a projected grid's posts: where the control points stand and what they are.
+void addPatches(DigestBytes& bytes, const PatchLattice& lattice) {
+  const PatchPlacement& placement = lattice.placement;
+  bytes.add(placement.degree);
+  for (const std::int64_t value :
+       {placement.cells, placement.first_x, placement.first_y, placement.columns, placement.rows}) {
+    bytes.add(value);
+  }
+  for (const double coordinate : lattice.controls) bytes.add(coordinate);
 }
 
 void addArea(DigestBytes& bytes, const AreaHeader& area) {
@@ -109,6 +122,9 @@ void addTerrain(DigestBytes& bytes, const TerrainBlock& block) {
   for (std::size_t i = 0; i < block.heights.size(); ++i)
     bytes.add(block.valid[i] != 0 ? block.heights[i] : 0);
   for (const std::uint8_t valid : block.valid) bytes.add(valid);
+  // An empty list of kinds is one of zeros.
+  for (std::size_t i = 0; i < block.valid.size(); ++i)
+    bytes.add(block.void_kinds.empty() ? std::uint8_t{0} : block.void_kinds[i]);
   for (const AncestorError& error : block.ancestors) {
     bytes.add(error.maximum);
     bytes.add(error.sum_of_squares);
@@ -143,6 +159,9 @@ Result<Hash128> contentDigest(const Database& database) {
   DigestBytes bytes;
   bytes.add(kDigestVersion);
   addArea(bytes, database.area());
+  for (int grid = 0; grid < database.gridCount(); ++grid) {
+    if (const auto& patches = database.grid(grid).patches()) addPatches(bytes, *patches);
+  }
   DELTAZ_TRY_ASSIGN(const Node root, database.root());
   DELTAZ_TRY_ASSIGN(const Hash128 tree, digestOf(database, root));
   bytes.add(tree);

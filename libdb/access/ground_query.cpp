@@ -1,6 +1,7 @@
 #include "libdb/access/ground_query.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace deltaz {
@@ -74,6 +75,112 @@ std::optional<double> heightInTile(const TerrainTile& tile, const GridGeometry& 
       rowConstants(geometry.header().ellipsoid, latitude), columnConstants(longitude), linear);
 }
 
+// The same on a projected grid, whose cells are found by going back from Earth-centred positions.
+
+// The cell of a projected grid over a place on the ellipsoid, by Newton's method on posts: the step from a
+// post is found from its neighbours. It may be the next cell, since cells bow; nothing if the place is far
+// from the grid.
+std::optional<std::array<std::int64_t, 2>> cellOver(const GridGeometry& geometry, const Vector3& foot) {
+  const PostRange columns = geometry.columnsAt(0), rows = geometry.rowsAt(0);
+  // Outside the lattice positions are extended, but not far: nothing is looked for beyond a tenth of the
+  // grid.
+  const auto within = [](std::int64_t index, PostRange range) {
+    const std::int64_t margin = range.size() / 10 + 2;
+    return std::clamp(index, range.begin - margin, range.end + margin);
+  };
+  std::int64_t column = (columns.begin + columns.end) / 2, row = (rows.begin + rows.end) / 2;
+  constexpr int kMostSteps = 20;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vector3 here = geometry.placeAt(column, row).foot;
+    const Vector3 east = geometry.placeAt(column + 1, row).foot - here;
+    const Vector3 north = geometry.placeAt(column, row + 1).foot - here;
+    const Vector3 offset = foot - here;
+    const double ee = dot(east, east), en = dot(east, north), nn = dot(north, north);
+    const double oe = dot(offset, east), on = dot(offset, north);
+    const double determinant = ee * nn - en * en;
+    if (!(determinant > 0)) return std::nullopt;
+    const double u = std::floor((oe * nn - on * en) / determinant);
+    const double v = std::floor((on * ee - oe * en) / determinant);
+    constexpr double kFarthestStep = 1e12;
+    if (!(std::abs(u) < kFarthestStep && std::abs(v) < kFarthestStep)) return std::nullopt;
+    const std::int64_t next_column = within(column + static_cast<std::int64_t>(u), columns);
+    const std::int64_t next_row = within(row + static_cast<std::int64_t>(v), rows);
+    if (std::abs(next_column - column) <= 1 && std::abs(next_row - row) <= 1) {
+      column = next_column;
+      row = next_row;
+      if (i > 0) break;
+      continue;
+    }
+    column = next_column;
+    row = next_row;
+  }
+  if (column < columns.begin - 1 || column > columns.end || row < rows.begin - 1 || row > rows.end)
+    return std::nullopt;
+  return std::array{column, row};
+}
+
+// Where the line foot + t * up meets the triangle a, b, c; `outside` becomes how far it passes, in
+// barycentric terms, 0 if it does not.
+double heightOnTriangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& foot,
+                        const Vector3& up, double& outside) {
+  const Vector3 normal = cross(b - a, c - a);
+  const double slope = dot(normal, up);
+  const double t = dot(normal, a - foot) / slope;
+  const Vector3 hit = foot + up * t;
+  const double area = dot(normal, normal);
+  const double least = std::min({dot(normal, cross(b - hit, c - hit)), dot(normal, cross(c - hit, a - hit)),
+                                 dot(normal, cross(a - hit, b - hit))});
+  outside = area > 0 && slope > 0 ? std::max(0.0, -least / area) : 2.0;
+  return t;
+}
+
+Result<std::optional<double>> projectedHeight(const Database& database, const Node& cluster, double latitude,
+                                              double longitude) {
+  const GridGeometry& geometry = database.grid(cluster.record.grid);
+  const GridHeader& grid = geometry.header();
+  const RowConstants row = rowConstants(grid.ellipsoid, latitude);
+  const ColumnConstants column = columnConstants(longitude);
+  const Vector3 foot = earthCentred(row, column, 0), up = upVector(row, column);
+  // A facet over the place lies in the grid's sphere, and as far above or below the place as its height is.
+  const double highest = std::max(std::abs(geometry.metres(cluster.record.minimum_height)),
+                                  std::abs(geometry.metres(cluster.record.maximum_height)));
+  if (length(foot - cluster.centroid) > cluster.radius() + highest + 1) return std::optional<double>{};
+  const auto cell = cellOver(geometry, foot);
+  if (!cell) return std::optional<double>{};
+  // The cell that was found and those around it: the edges of facets bow, and the nearest hit wins.
+  std::optional<double> best;
+  constexpr double kOutside = 1e-6;  // of a facet, in barycentric terms
+  double best_outside = kOutside;
+  std::optional<TerrainTile> tile;
+  for (std::int64_t j = (*cell)[1] - 1; j <= (*cell)[1] + 1; ++j) {
+    for (std::int64_t i = (*cell)[0] - 1; i <= (*cell)[0] + 1; ++i) {
+      const std::int64_t x = floorDivide(i, grid.leaf_cells), y = floorDivide(j, grid.leaf_cells);
+      if (!tile || tile->x != x || tile->y != y) {
+        DELTAZ_TRY_ASSIGN(const std::optional<Node> leaf, leafAt(database, cluster, x, y));
+        if (!leaf || leaf->record.isEmpty()) continue;
+        DELTAZ_TRY_ASSIGN(tile, database.terrain(*leaf));
+      }
+      const int ti = static_cast<int>(i - tile->first_column), tj = static_cast<int>(j - tile->first_row);
+      if (ti < 0 || tj < 0 || ti + 1 >= tile->columns || tj + 1 >= tile->rows) continue;
+      const auto corner = [&](int di, int dj) {
+        return geometry.placeAt(i + di, j + dj).at(geometry.metres(tile->height(ti + di, tj + dj)));
+      };
+      const auto consider = [&](const Vector3& third, bool top) {
+        double outside = 0;
+        const Vector3 a = corner(0, 0), c = corner(1, 1);
+        const double height = top ? heightOnTriangle(a, c, third, foot, up, outside)
+                                  : heightOnTriangle(a, third, c, foot, up, outside);
+        if (outside > best_outside || (best && outside == best_outside)) return;
+        best = height;
+        best_outside = outside;
+      };
+      if (tile->bottomFaceValid(ti, tj)) consider(corner(1, 0), false);
+      if (tile->topFaceValid(ti, tj)) consider(corner(0, 1), true);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 Result<std::optional<double>> groundHeight(const Database& database, double latitude, double longitude) {
@@ -82,6 +189,12 @@ Result<std::optional<double>> groundHeight(const Database& database, double lati
   for (const Node& cluster : clusters) {
     const GridGeometry& geometry = database.grid(cluster.record.grid);
     const GridHeader& grid = geometry.header();
+    if (!geometry.isGeodetic()) {
+      DELTAZ_TRY_ASSIGN(const std::optional<double> height,
+                        projectedHeight(database, cluster, latitude, longitude));
+      if (height) return height;
+      continue;
+    }
     const auto y = locate(grid.y_axis, kLatitudeOrigin, latitude);
     if (!y) continue;
     for (const double turn : {0.0, 360.0, -360.0}) {

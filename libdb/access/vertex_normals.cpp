@@ -102,10 +102,35 @@ class PostOffsets {
   std::vector<RowStep> row_steps_;
 };
 
-}  // namespace
+// The same on a projected grid, whose posts lie at least 0.1 mm apart: differences of positions, each of
+// which has the same bits in whatever tile it occurs.
+class ProjectedOffsets {
+ public:
+  ProjectedOffsets(const TerrainTile& tile, const GridGeometry& geometry)
+      : columns_(static_cast<std::size_t>(tile.columns + 2)),
+        places_(geometry.postPlaces(tile.level, {tile.first_column - 1, tile.first_column + tile.columns + 1},
+                                    {tile.first_row - 1, tile.first_row + tile.rows + 1})) {
+    positions_.reserve(places_.size());
+    for (std::size_t k = 0; k < places_.size(); ++k)
+      positions_.push_back(places_[k].at(geometry.metres(tile.heights[k])));
+  }
 
-std::vector<Vector3> vertexNormals(const TerrainTile& tile, const GridGeometry& geometry) {
-  const PostOffsets offsets(tile, geometry);
+  Vector3 up(int i, int j) const { return places_[index(i, j)].up; }
+  Vector3 offset(int i, int j, int di, int dj) const {
+    return positions_[index(i + di, j + dj)] - positions_[index(i, j)];
+  }
+
+ private:
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j + 1) * columns_ + static_cast<std::size_t>(i + 1);
+  }
+  std::size_t columns_;
+  std::vector<PostPlace> places_;
+  std::vector<Vector3> positions_;
+};
+
+template <typename Offsets>
+std::vector<Vector3> normalsFrom(const TerrainTile& tile, const Offsets& offsets) {
   std::vector<Vector3> normals;
   normals.reserve(static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows));
   for (int j = 0; j < tile.rows; ++j) {
@@ -124,6 +149,13 @@ std::vector<Vector3> vertexNormals(const TerrainTile& tile, const GridGeometry& 
     }
   }
   return normals;
+}
+
+}  // namespace
+
+std::vector<Vector3> vertexNormals(const TerrainTile& tile, const GridGeometry& geometry) {
+  return geometry.isGeodetic() ? normalsFrom(tile, PostOffsets(tile, geometry))
+                               : normalsFrom(tile, ProjectedOffsets(tile, geometry));
 }
 
 }  // namespace deltaz

@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <fmt/format.h>
-#include <limits>
-#include <numbers>
-#include <tbb/blocked_range.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-#include <vector>
+#include <optional>
 
 #include "formats/container.h"
+#include "formats/patch_lattice.h"
 #include "formats/version.h"
-#include "libdb/build/facet_error.h"
-#include "libdb/build/node_bounds.h"
+#include "libdb/build/area_bounds.h"
+#include "libdb/build/grid_build.h"
 #include "libdb/build/publication.h"
-#include "libdb/build/pyramid.h"
+#include "libdb/build/worker_pool.h"
 
 namespace deltaz {
 
@@ -27,54 +23,40 @@ constexpr std::uint64_t kSegmentBytes = 64u << 20;
 // Nodes encoded at a time, so that packed blocks never pile up in memory.
 constexpr std::size_t kNodesPerBatch = 512;
 
-// Calls work(i) for 0 <= i < count on the threads of `arena`; the order must not matter.
-template <typename Work>
-void inParallel(tbb::task_arena& arena, std::size_t count, const Work& work) {
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
-                      });
-  });
-}
-
-// Everything a build learns about its nodes, by index into PyramidPlan::nodes.
-struct NodeFacts {
-  TileSummary summary;
-  std::vector<AncestorError> leaf_errors;  // leaves only
-  std::uint32_t maximum_error = 0;         // of the posts below, kErrorUnit
-  double sum_of_squares = 0;
-  std::uint64_t compared_posts = 0;
+// A planned terrain node in the order of the files, and where its terrain went.
+struct OrderedNode {
+  std::uint16_t grid = 0;
+  std::uint32_t node = 0;  // index into the grid's plan
   std::uint32_t segment = 0, block = kNoBlock;
 };
 
-class TerrainBuild {
+class AreaBuild {
  public:
-  TerrainBuild(const FileSystem& files, const RawGrid& grid, const BuildOptions& options)
-      : files_(files),
-        grid_(grid),
-        options_(options),
-        header_(grid.header),
-        geometry_(makeHeader(grid, options)),
-        // More threads than the machine has would only wait for each other.
-        arena_(options.threads > 0 ? std::min(options.threads, tbb::info::default_concurrency())
-                                   : tbb::task_arena::automatic) {
-    plan_ = planPyramid(geometry_);
-    header_ = geometry_.header();
-    header_.level_count = plan_.level_count;
-    facts_.resize(plan_.nodes.size());
+  AreaBuild(const FileSystem& files, std::span<const RawGrid> grids, const BuildOptions& options)
+      : files_(files), options_(options), workers_(options.threads) {
+    for (const RawGrid& grid : grids) grids_.emplace_back(grid, options.leaf_cells);
+    orderNodes();
   }
 
   Result<BuildSummary> run(const std::string& target) {
     DELTAZ_TRY_ASSIGN(Publication publication, Publication::begin(files_, target, options_.overwrite));
-    report("bounds", 0);
-    measureTiles();
-    report("errors", 0.2);
-    measureErrors();
-    gatherUpwards();
+    double done = 0;
+    const double share = 0.6 / static_cast<double>(grids_.size());
+    for (GridBuild& grid : grids_) {
+      report("bounds", done);
+      grid.measureTiles(workers_);
+      report("errors", done + 0.3 * share);
+      grid.measureErrors(workers_);
+      report("coverage", done + 0.8 * share);
+      grid.measureCoverage(workers_);
+      grid.gatherUpwards();
+      done += share;
+    }
+    gatherArea();
     report("terrain", 0.6);
     DELTAZ_TRY(writeTerrain(publication));
     report("nodes", 0.95);
+    DELTAZ_TRY(writePatches(publication));
     DELTAZ_TRY(writeNodes(publication));
     describeArea();
     DELTAZ_TRY(publication.publish(area_));
@@ -83,87 +65,51 @@ class TerrainBuild {
   }
 
  private:
-  static GridHeader makeHeader(const RawGrid& grid, const BuildOptions& options) {
-    GridHeader header = grid.header;
-    header.leaf_cells = options.leaf_cells;
-    header.normal_exponent = 2;
-    return header;
-  }
-
   void report(std::string_view phase, double fraction) const {
     if (options_.progress) options_.progress(phase, fraction);
   }
 
-  std::size_t levelBegin(int level) const { return plan_.level_begin[static_cast<std::size_t>(level)]; }
-  std::size_t levelEnd(int level) const { return plan_.level_end[static_cast<std::size_t>(level)]; }
-  TerrainTile tileOf(std::size_t index) const {
-    const PlannedNode& node = plan_.nodes[index];
-    return cutTile(grid_, geometry_, node.level, node.x, node.y);
-  }
-
-  void measureTiles() {
-    inParallel(arena_, plan_.nodes.size(),
-               [&](std::size_t i) { facts_[i].summary = summarizeTile(tileOf(i), geometry_); });
-    steepest_.assign(static_cast<std::size_t>(plan_.level_count), 0.0);
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      double& steepest = steepest_[static_cast<std::size_t>(plan_.nodes[i].level)];
-      steepest = std::max(steepest, facts_[i].summary.steepest);
+  // Breadth first over all grids: depth by depth from each grid's coarsest level, within a depth grid by
+  // grid.
+  void orderNodes() {
+    numbers_.resize(grids_.size());
+    int deepest = 0;
+    for (std::size_t g = 0; g < grids_.size(); ++g) {
+      numbers_[g].resize(grids_[g].plan().nodes.size());
+      deepest = std::max(deepest, grids_[g].plan().level_count);
     }
-  }
-
-  void measureErrors() {
-    const std::size_t begin = levelBegin(0);
-    inParallel(arena_, levelEnd(0) - begin, [&](std::size_t i) {
-      const PlannedNode& leaf = plan_.nodes[begin + i];
-      facts_[begin + i].leaf_errors = leafErrors(grid_, geometry_, plan_.level_count, leaf.x, leaf.y);
-    });
-    // Every ancestor of a leaf takes the leaf's errors against its own level.
-    for (std::size_t leaf = begin; leaf < levelEnd(0); ++leaf) {
-      std::size_t ancestor = leaf;
-      for (const AncestorError& error : facts_[leaf].leaf_errors) {
-        ancestor = plan_.nodes[ancestor].parent;
-        NodeFacts& facts = facts_[ancestor];
-        facts.maximum_error = std::max(facts.maximum_error, error.maximum);
-        facts.sum_of_squares += static_cast<double>(error.sum_of_squares);
-        facts.compared_posts += error.posts;
+    for (int depth = 0; depth < deepest; ++depth) {
+      for (std::size_t g = 0; g < grids_.size(); ++g) {
+        const PyramidPlan& plan = grids_[g].plan();
+        if (depth >= plan.level_count) continue;
+        const auto level = static_cast<std::size_t>(plan.level_count - 1 - depth);
+        for (std::uint32_t node = plan.level_begin[level]; node < plan.level_end[level]; ++node) {
+          // Records 1 and onwards are the area's and the grids' clusters.
+          numbers_[g][node] = static_cast<std::uint32_t>(order_.size() + grids_.size() + 2);
+          order_.push_back({static_cast<std::uint16_t>(g), node});
+        }
       }
     }
   }
 
-  // Bounds of children into parents; children stand behind their parents.
-  void gatherUpwards() {
-    for (std::size_t i = plan_.nodes.size(); i-- > 0;) {
-      const PlannedNode& node = plan_.nodes[i];
-      if (node.child_count == 0) continue;
-      std::vector<NodeBounds> children;
-      for (std::uint32_t c = 0; c < node.child_count; ++c)
-        children.push_back(facts_[node.first_child + c].summary.bounds);
-      includeChildren(facts_[i].summary.bounds, children);
+  void gatherArea() {
+    std::vector<NodeBounds> of_grids;
+    bool first = true;
+    for (const GridBuild& grid : grids_) {
+      of_grids.push_back(grid.bounds());
+      if (grid.bounds().empty) continue;
+      const double low = grid.geometry().metres(grid.bounds().minimum_height);
+      const double high = grid.geometry().metres(grid.bounds().maximum_height);
+      area_.lowest_height = first ? low : std::min(area_.lowest_height, low);
+      area_.highest_height = first ? high : std::max(area_.highest_height, high);
+      first = false;
     }
-    std::vector<NodeBounds> top;
-    const int top_level = plan_.level_count - 1;
-    for (std::size_t i = levelBegin(top_level); i < levelEnd(top_level); ++i)
-      top.push_back(facts_[i].summary.bounds);
-    includeChildren(grid_bounds_, top);
-  }
-
-  std::vector<std::byte> encode(std::size_t index) const {
-    const PlannedNode& node = plan_.nodes[index];
-    TerrainTile tile = tileOf(index);
-    TerrainBlock block;
-    block.columns = static_cast<std::uint16_t>(tile.columns);
-    block.rows = static_cast<std::uint16_t>(tile.rows);
-    block.first_column =
-        static_cast<std::uint16_t>(tile.first_column - std::int64_t{node.x} * header_.leaf_cells);
-    block.first_row = static_cast<std::uint16_t>(tile.first_row - std::int64_t{node.y} * header_.leaf_cells);
-    const double scale = static_cast<double>(std::int64_t{1} << node.level);
-    block.spacing_x = header_.x_axis.spacing * scale;
-    block.spacing_y = header_.y_axis.spacing * scale;
-    block.quantum = header_.quantum;
-    block.heights = std::move(tile.heights);
-    block.valid = std::move(tile.valid);
-    block.ancestors = facts_[index].leaf_errors;
-    return encodeTerrainBlock(block);
+    // A single grid's bounds are the area's; a second sphere around them would only be larger.
+    if (grids_.size() == 1) {
+      bounds_ = of_grids.front();
+    } else {
+      includeChildren(bounds_, of_grids);
+    }
   }
 
   Status writeTerrain(Publication& publication) {
@@ -177,10 +123,12 @@ class TerrainBuild {
       ++segment;
       return Success{};
     };
-    for (std::size_t first = 0; first < plan_.nodes.size(); first += kNodesPerBatch) {
-      const std::size_t count = std::min(kNodesPerBatch, plan_.nodes.size() - first);
+    for (std::size_t first = 0; first < order_.size(); first += kNodesPerBatch) {
+      const std::size_t count = std::min(kNodesPerBatch, order_.size() - first);
       std::vector<std::vector<std::byte>> blocks(count);
-      inParallel(arena_, count, [&](std::size_t i) { blocks[i] = encode(first + i); });
+      workers_.forEach(count, [&](std::size_t i) {
+        blocks[i] = grids_[order_[first + i].grid].encodeBlock(order_[first + i].node);
+      });
       for (std::size_t i = 0; i < count; ++i) {
         if (!writer) {
           name = fmt::format("terrain-{:06}-{:03}.dzt", publication.generation(), segment);
@@ -189,98 +137,90 @@ class TerrainBuild {
               ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kTerrain));
           writer.emplace(std::move(created));
         }
-        facts_[first + i].segment = segment;
-        DELTAZ_TRY_ASSIGN(facts_[first + i].block, writer->append(BlockType::kTerrainNode, blocks[i]));
+        order_[first + i].segment = segment;
+        DELTAZ_TRY_ASSIGN(order_[first + i].block, writer->append(BlockType::kTerrainNode, blocks[i]));
         if (writer->size() >= kSegmentBytes) DELTAZ_TRY(finishSegment());
       }
-      report("terrain",
-             0.6 + 0.35 * static_cast<double>(first + count) / static_cast<double>(plan_.nodes.size()));
+      report("terrain", 0.6 + 0.35 * static_cast<double>(first + count) / static_cast<double>(order_.size()));
     }
     if (writer) DELTAZ_TRY(finishSegment());
     return Success{};
   }
 
-  // Record of planned node `index`; record numbers 1 and 2 are the clusters.
-  NodeRecord recordOf(std::size_t index) const {
-    const PlannedNode& node = plan_.nodes[index];
-    const NodeFacts& facts = facts_[index];
-    NodeRecord record;
-    record.type = NodeType::kTerrain;
-    record.level = static_cast<std::uint8_t>(node.level);
-    record.child_number = node.child_number;
-    record.x = node.x;
-    record.y = node.y;
-    record.first_child = node.child_count == 0 ? 0 : recordNumber(node.first_child);
-    const bool last = node.parent == kNoNode ? index + 1 == levelEnd(node.level)
-                                             : index + 1 == plan_.nodes[node.parent].first_child +
-                                                                plan_.nodes[node.parent].child_count;
-    record.sibling = last ? 0 : recordNumber(index + 1);
-    record.segment = facts.segment;
-    record.block = facts.block;
-    record.valid_posts = facts.summary.valid_posts;
-    if (facts.summary.void_posts > 0) record.flags |= kNodeHasVoids;
-    const NodeBounds& parent = node.parent == kNoNode ? grid_bounds_ : facts_[node.parent].summary.bounds;
-    putBounds(record, facts.summary.bounds, parent.centroid);
-    putErrors(record, node, facts);
-    return record;
+  // The control points of every projected grid.
+  Status writePatches(Publication& publication) {
+    for (std::size_t g = 0; g < grids_.size(); ++g) {
+      const std::shared_ptr<const PatchLattice>& lattice = grids_[g].source().patches;
+      if (!lattice) continue;
+      const std::string name = fmt::format("patches-{:06}-{:03}.dzp", publication.generation(), g);
+      DELTAZ_TRY_ASSIGN(ContainerWriter writer, ContainerWriter::create(files_, publication.newFilePath(name),
+                                                                        ContentKind::kPatches));
+      const auto row_size = static_cast<std::size_t>(lattice->pointColumns() * 3);
+      for (std::size_t begin = 0; begin < lattice->controls.size(); begin += row_size) {
+        DELTAZ_TRY_ASSIGN(
+            [[maybe_unused]] const std::uint32_t block,
+            writer.append(BlockType::kPatchRow,
+                          encodePatchRow(std::span(lattice->controls).subspan(begin, row_size))));
+      }
+      DELTAZ_TRY_ASSIGN(const FileIdentity identity, writer.finish());
+      area_.files.push_back(
+          {FileRole::kPatches, static_cast<std::uint32_t>(g), name, identity.length, identity.id});
+    }
+    return Success{};
   }
 
-  static std::uint32_t recordNumber(std::size_t index) { return static_cast<std::uint32_t>(index + 3); }
-
-  static void putBounds(NodeRecord& record, const NodeBounds& bounds,
-                        const std::array<std::int64_t, 3>& parent_centroid) {
-    if (bounds.empty) {
-      record.flags |= kNodeIsEmpty;
-      return;
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      record.centroid_offset[k] = static_cast<std::int32_t>(bounds.centroid[k] - parent_centroid[k]);
-    record.radius = bounds.radius;
-    record.minimum_height = bounds.minimum_height;
-    record.maximum_height = bounds.maximum_height;
-    record.mean_normal = bounds.mean_normal;
-    record.cone_half_angle = bounds.cone_half_angle;
-  }
-
-  void putErrors(NodeRecord& record, const PlannedNode& node, const NodeFacts& facts) const {
-    if (node.level == 0 || facts.summary.bounds.empty) {
-      record.geometric_error = record.coverage_error = record.rms_error = 0;
-      return;
-    }
-    // A node that draws nothing has no error that could be bounded.
-    if (facts.summary.facets == 0) return;
-    const double slack = betweenPostsSlack(geometry_, node.level, steepest_) / kErrorUnit;
-    const double error = std::ceil(static_cast<double>(facts.maximum_error) + slack);
-    if (error < static_cast<double>(kUnknownError))
-      record.geometric_error = static_cast<std::uint32_t>(error);
-    if (facts.compared_posts > 0) {
-      const double rms = std::sqrt(facts.sum_of_squares / static_cast<double>(facts.compared_posts));
-      record.rms_error =
-          static_cast<std::uint32_t>(std::min(std::round(rms), static_cast<double>(kUnknownError - 1)));
-    }
-  }
-
-  // The grid's and the area's cluster: no data, all children's bounds.
-  NodeRecord clusterRecord(std::uint8_t level, std::uint32_t first_child) const {
+  // A cluster's record: no data, all children's bounds.
+  static NodeRecord clusterRecord(std::uint8_t level, const NodeBounds& bounds,
+                                  const std::array<std::int64_t, 3>& parent_centroid) {
     NodeRecord record;
     record.type = NodeType::kCluster;
     record.level = level;
-    record.first_child = first_child;
     record.geometric_error = record.coverage_error = record.rms_error = kUnknownError;
-    putBounds(record, grid_bounds_, grid_bounds_.centroid);
+    putBounds(record, bounds, parent_centroid);
+    return record;
+  }
+
+  std::vector<NodeRecord> clusterRecords() const {
+    std::vector<NodeRecord> records;
+    NodeRecord area = clusterRecord(kAreaLevel, bounds_, bounds_.centroid);
+    area.first_child = 2;
+    if (!bounds_.empty) {
+      area.minimum_height = static_cast<std::int32_t>(std::floor(area_.lowest_height));
+      area.maximum_height = static_cast<std::int32_t>(std::ceil(area_.highest_height));
+    }
+    records.push_back(area);
+    for (std::size_t g = 0; g < grids_.size(); ++g) {
+      NodeRecord cluster = clusterRecord(static_cast<std::uint8_t>(grids_[g].plan().level_count),
+                                         grids_[g].bounds(), bounds_.centroid);
+      cluster.grid = static_cast<std::uint16_t>(g);
+      cluster.first_child = numbers_[g].front();
+      cluster.sibling = g + 1 < grids_.size() ? static_cast<std::uint32_t>(g + 3) : 0;
+      records.push_back(cluster);
+    }
+    return records;
+  }
+
+  NodeRecord recordOf(const OrderedNode& ordered) const {
+    const GridBuild& grid = grids_[ordered.grid];
+    const std::vector<PlannedNode>& nodes = grid.plan().nodes;
+    const PlannedNode& node = nodes[ordered.node];
+    NodeRecord record = grid.recordOf(ordered.node);
+    record.grid = ordered.grid;
+    record.segment = ordered.segment;
+    record.block = ordered.block;
+    record.first_child = node.child_count == 0 ? 0 : numbers_[ordered.grid][node.first_child];
+    // The children of one parent stand together.
+    const std::size_t next = ordered.node + std::size_t{1};
+    const bool has_sibling =
+        next < nodes.size() && nodes[next].parent == node.parent && nodes[next].level == node.level;
+    record.sibling = has_sibling ? numbers_[ordered.grid][next] : 0;
     return record;
   }
 
   Status writeNodes(Publication& publication) {
-    std::vector<NodeRecord> records;
-    records.reserve(plan_.nodes.size() + 2);
-    NodeRecord area = clusterRecord(kAreaLevel, 2);
-    area.minimum_height =
-        static_cast<std::int32_t>(std::floor(geometry_.metres(grid_bounds_.minimum_height)));
-    area.maximum_height = static_cast<std::int32_t>(std::ceil(geometry_.metres(grid_bounds_.maximum_height)));
-    records.push_back(area);
-    records.push_back(clusterRecord(static_cast<std::uint8_t>(plan_.level_count), recordNumber(0)));
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) records.push_back(recordOf(i));
+    std::vector<NodeRecord> records = clusterRecords();
+    records.reserve(records.size() + order_.size());
+    for (const OrderedNode& node : order_) records.push_back(recordOf(node));
 
     const std::string name = fmt::format("nodes-{:06}.dzn", publication.generation());
     DELTAZ_TRY_ASSIGN(ContainerWriter writer,
@@ -299,77 +239,99 @@ class TerrainBuild {
   }
 
   void describeArea() {
-    area_.west = geometry_.longitude(header_.x_axis.first);
-    area_.east = geometry_.longitude(header_.x_axis.first + header_.x_axis.count - 1);
-    area_.south = geometry_.latitude(header_.y_axis.first);
-    area_.north = geometry_.latitude(header_.y_axis.first + header_.y_axis.count - 1);
-    area_.centroid = grid_bounds_.centroid;
-    area_.lowest_height = geometry_.metres(grid_bounds_.minimum_height);
-    area_.highest_height = geometry_.metres(grid_bounds_.maximum_height);
-    area_.sea_drop = chordSag();
-    area_.grids = {header_};
+    std::vector<const GridGeometry*> geometries;
+    double sag = 0;
+    for (const GridBuild& grid : grids_) {
+      geometries.push_back(&grid.geometry());
+      area_.grids.push_back(grid.header());
+      sag = std::max(sag, grid.chordSagOfCoarsest());
+    }
+    const DegreeBounds bounds = boundsOf(geometries);
+    area_.west = bounds.west;
+    area_.south = bounds.south;
+    area_.east = bounds.east;
+    area_.north = bounds.north;
+    area_.centroid = bounds_.centroid;
+    area_.sea_drop = std::ceil(sag / kErrorUnit) * kErrorUnit;
     area_.tool_version = fmt::format("deltaz {}", version());
-    area_.options = {{"leaf", std::to_string(header_.leaf_cells)}};
-  }
-
-  // How far the middle of the coarsest cell's diagonal lies below its ends, metres.
-  double chordSag() const {
-    constexpr double kRadians = std::numbers::pi / 180.0;
-    const double scale = static_cast<double>(std::int64_t{1} << (plan_.level_count - 1)) * kRadians;
-    const double angle =
-        std::hypot(header_.x_axis.spacing, header_.y_axis.spacing) * scale;
-    const double distance =
-        header_.ellipsoid.semi_major_axis + std::abs(geometry_.metres(grid_bounds_.maximum_height));
-    return std::ceil(distance * (1.0 - std::cos(std::min(angle / 2, std::numbers::pi / 2))) / kErrorUnit) *
-           kErrorUnit;
+    area_.options = options_.provenance;
+    area_.options.emplace_back("leaf", std::to_string(options_.leaf_cells));
+    std::sort(area_.options.begin(), area_.options.end());
   }
 
   BuildSummary summary() const {
     BuildSummary result;
     result.nodes = area_.node_count;
-    result.levels = plan_.level_count;
-    result.posts = grid_.heights.size();
-    result.voids =
-        static_cast<std::uint64_t>(std::count(grid_.valid.begin(), grid_.valid.end(), std::uint8_t{0}));
+    for (const GridBuild& grid : grids_) {
+      const RawGrid& source = grid.source();
+      result.levels = std::max(result.levels, grid.plan().level_count);
+      result.posts += source.heights.size();
+      result.voids +=
+          static_cast<std::uint64_t>(std::count(source.valid.begin(), source.valid.end(), std::uint8_t{0}));
+      result.largest_error = std::max(result.largest_error, grid.largestErrorOfCoarsest());
+    }
     for (const FileReference& file : area_.files) result.bytes += file.length;
     result.bytes += serializeArea(area_).size();
-    const int top_level = plan_.level_count - 1;
-    for (std::size_t i = levelBegin(top_level); i < levelEnd(top_level); ++i) {
-      result.largest_error =
-          std::max(result.largest_error, static_cast<double>(facts_[i].maximum_error) * kErrorUnit);
-    }
     return result;
   }
 
   const FileSystem& files_;
-  const RawGrid& grid_;
   const BuildOptions& options_;
-  GridHeader header_;
-  GridGeometry geometry_;
-  tbb::task_arena arena_;
-  PyramidPlan plan_;
-  std::vector<NodeFacts> facts_;
-  std::vector<double> steepest_;
-  NodeBounds grid_bounds_;
+  WorkerPool workers_;
+  std::deque<GridBuild> grids_;
+  std::vector<OrderedNode> order_;                   // terrain nodes in the order of their records
+  std::vector<std::vector<std::uint32_t>> numbers_;  // record number by grid and planned node
+  NodeBounds bounds_;                                // of the area; heights mean nothing
   AreaHeader area_;
 };
 
+Status checkGrids(std::span<const RawGrid> grids) {
+  constexpr std::size_t kMostGrids = 0xFFFF;
+  if (grids.empty() || grids.size() > kMostGrids)
+    return usageError("sources", fmt::format("{} grids do not make an area", grids.size()));
+  for (const RawGrid& grid : grids) {
+    const GridHeader& header = grid.header;
+    if (header.ellipsoid != grids.front().header.ellipsoid) {
+      return usageError(
+          "sources", "the grids stand on different ellipsoids",
+          fmt::format("one is {} m, 1/{}, another {} m, 1/{}", grids.front().header.ellipsoid.semi_major_axis,
+                      grids.front().header.ellipsoid.inverse_flattening, header.ellipsoid.semi_major_axis,
+                      header.ellipsoid.inverse_flattening),
+          "Bring all sources to one datum first");
+    }
+    const bool projected = header.kind == "projected";
+    const bool placed =
+        grid.patches != nullptr && header.patches.has_value() && grid.patches->placement == *header.patches &&
+        grid.patches->controls.size() ==
+            static_cast<std::size_t>(grid.patches->pointColumns() * grid.patches->pointRows() * 3);
+    if (projected != placed || projected != (grid.patches != nullptr))
+      return internalError("sources", "a grid's control points are not what its header says");
+  }
+  return Success{};
+}
+
 }  // namespace
 
-Result<BuildSummary> buildTerrain(const FileSystem& files, const RawGrid& grid, const std::string& target,
-                                  const BuildOptions& options) {
+Result<BuildSummary> buildTerrain(const FileSystem& files, std::span<const RawGrid> grids,
+                                  const std::string& target, const BuildOptions& options) {
   if (options.leaf_cells < 8 || options.leaf_cells > static_cast<int>(kMaximumLeafCells) ||
       !std::has_single_bit(static_cast<unsigned>(options.leaf_cells))) {
     return usageError("--leaf", fmt::format("{} cells", options.leaf_cells),
                       "a leaf has a power of two of cells a side, from 8 to 1024");
   }
+  DELTAZ_TRY(checkGrids(grids));
   try {
-    return TerrainBuild(files, grid, options).run(target);
+    return AreaBuild(files, grids, options).run(target);
   } catch (const std::bad_alloc&) {
     return accessError(target, "cannot build the database", "there is not enough memory");
   } catch (const std::exception& exception) {
     return internalError(target, exception.what());
   }
+}
+
+Result<BuildSummary> buildTerrain(const FileSystem& files, const RawGrid& grid, const std::string& target,
+                                  const BuildOptions& options) {
+  return buildTerrain(files, std::span(&grid, 1), target, options);
 }
 
 }  // namespace deltaz

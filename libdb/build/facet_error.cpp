@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "libdb/build/plan_shape.h"
 
 namespace deltaz {
 
@@ -12,6 +13,8 @@ namespace {
 
 // How far outside a facet, in barycentric terms, a post may lie before its neighbour is looked at.
 constexpr double kInsideTolerance = 1e-9;
+// Sine of the angle between two edges at which a facet counts as having no extent.
+constexpr double kDegenerate = 1e-12;
 
 // Positions of the coarse posts around a leaf.
 class CoarseWindow {
@@ -20,8 +23,7 @@ class CoarseWindow {
                PostRange rows)
       : columns_(columns), rows_(rows) {
     const std::int64_t step = std::int64_t{1} << level;
-    const std::vector<ColumnConstants> column_constants = geometry.columnConstantsOf(level, columns);
-    const std::vector<RowConstants> row_constants = geometry.rowConstantsOf(level, rows);
+    const std::vector<PostPlace> places = geometry.postPlaces(level, columns, rows);
     positions_.resize(static_cast<std::size_t>(columns.size() * rows.size()));
     valid_.assign(positions_.size(), 0);
     for (std::int64_t J = rows.begin; J < rows.end; ++J) {
@@ -30,9 +32,7 @@ class CoarseWindow {
       for (std::int64_t I = columns.begin; I < columns.end; ++I) {
         const std::int64_t column = I * step - grid.header.x_axis.first;
         if (column < 0 || column >= grid.header.x_axis.count || !grid.isValid(column, row)) continue;
-        positions_[index(I, J)] = earthCentred(row_constants[static_cast<std::size_t>(J - rows.begin)],
-                                               column_constants[static_cast<std::size_t>(I - columns.begin)],
-                                               geometry.metres(grid.height(column, row)));
+        positions_[index(I, J)] = places[index(I, J)].at(geometry.metres(grid.height(column, row)));
         valid_[index(I, J)] = 1;
       }
     }
@@ -79,6 +79,7 @@ struct Pierce {
   double inside = -std::numeric_limits<double>::infinity();  // smallest barycentric coordinate; >= 0 inside
   int nearest_vertex_across = 0;                             // whose barycentric coordinate it is
   bool valid = false;
+  bool degenerate = false;  // the facet is there but has no extent, as at a pole, where a row is one point
 };
 
 // Where the line foot + t * up meets the facet's plane (Moeller and Trumbore 1997).
@@ -94,7 +95,10 @@ Pierce pierce(const CoarseWindow& window, const Facet& facet, const Vector3& foo
   const Vector3 e2 = v2 - v0;
   const Vector3 p = cross(up, e2);
   const double determinant = dot(e1, p);
-  if (determinant == 0) return result;
+  if (std::abs(determinant) <= kDegenerate * length(e1) * length(e2)) {
+    result.degenerate = true;
+    return result;
+  }
   const Vector3 s = foot - v0;
   const Vector3 q = cross(s, e1);
   const double b1 = dot(s, p) / determinant;
@@ -145,6 +149,11 @@ Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int
       facet = candidates[1];
     }
   }
+  // Beside a pole the cell's other facet reaches over the whole cell.
+  if (!best.valid && best.degenerate) {
+    facet = {candidates[0].I, candidates[0].J, !candidates[0].top};
+    best = pierce(window, facet, foot, up);
+  }
   // The edges of facets bow in plan, so the facet that is met may be the next one.
   for (int steps = 0; best.valid && best.inside < -kInsideTolerance && steps < 4; ++steps) {
     const Facet next_facet = facet.across(best.nearest_vertex_across);
@@ -162,8 +171,7 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
                                       std::int32_t x, std::int32_t y) {
   const PostRange columns = geometry.nodePosts(geometry.columnsAt(0), x);
   const PostRange rows = geometry.nodePosts(geometry.rowsAt(0), y);
-  const std::vector<ColumnConstants> column_constants = geometry.columnConstantsOf(0, columns);
-  const std::vector<RowConstants> row_constants = geometry.rowConstantsOf(0, rows);
+  const std::vector<PostPlace> places = geometry.postPlaces(0, columns, rows);
   const std::int64_t leaf = geometry.header().leaf_cells;
   const std::int64_t owned_column_end =
       columns.end == geometry.columnsAt(0).end ? columns.end : (x + 1) * leaf;
@@ -179,20 +187,17 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
                               {floorDivide(rows.begin, step) - 1, floorDivide(rows.end - 1, step) + 3});
     double maximum = 0;
     for (std::int64_t row = rows.begin; row < rows.end; ++row) {
-      const RowConstants& row_constant = row_constants[static_cast<std::size_t>(row - rows.begin)];
       for (std::int64_t column = columns.begin; column < columns.end; ++column) {
         if (!grid.isValid(column - grid.header.x_axis.first, row - grid.header.y_axis.first)) continue;
         double difference = 0;
         // A post of the coarse level is a corner of its facets: no difference.
         if (column % step != 0 || row % step != 0) {
-          const ColumnConstants& column_constant =
-              column_constants[static_cast<std::size_t>(column - columns.begin)];
-          const Pierce surface =
-              coarseSurfaceAt(window, column, row, step, earthCentred(row_constant, column_constant, 0),
-                              upVector(row_constant, column_constant));
+          const PostPlace& place = places[static_cast<std::size_t>((row - rows.begin) * columns.size() +
+                                                                   (column - columns.begin))];
+          const Pierce surface = coarseSurfaceAt(window, column, row, step, place.foot, place.up);
           if (!surface.valid) continue;
-          const double height = geometry.metres(
-              grid.height(column - grid.header.x_axis.first, row - grid.header.y_axis.first));
+          const double height =
+              geometry.metres(grid.height(column - grid.header.x_axis.first, row - grid.header.y_axis.first));
           difference = std::abs(height - surface.height);
         }
         maximum = std::max(maximum, difference);
@@ -209,25 +214,14 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
 }
 
 double betweenPostsSlack(const GridGeometry& geometry, int level, const std::vector<double>& steepest) {
-  const GridHeader& header = geometry.header();
-  constexpr double kRadians = std::numbers::pi / 180.0;
-  const double radius = header.ellipsoid.semi_major_axis;
-  const double south = geometry.latitude(header.y_axis.first) * kRadians;
-  const double north = geometry.latitude(header.y_axis.first + header.y_axis.count - 1) * kRadians;
-  const double largest_sine = std::max(std::abs(std::sin(south)), std::abs(std::sin(north)));
-  const double largest_cosine = south <= 0 && north >= 0 ? 1.0 : std::max(std::cos(south), std::cos(north));
-  const double fine_lon = header.x_axis.spacing * kRadians;
-  const double fine_lat = header.y_axis.spacing * kRadians;
-  const double fine_diagonal = radius * std::hypot(fine_lon * largest_cosine, fine_lat);
+  const double fine_diagonal = largestCell(geometry, geometry.columnsAt(0), geometry.rowsAt(0)).diagonal();
   const double g0 = steepest[0];
+  // The smallest radius of curvature there is: the meridian's at the equator.
+  const EllipsoidShape& ellipsoid = geometry.header().ellipsoid;
+  const double axes = ellipsoid.inverse_flattening == 0 ? 1 : 1 - 1 / ellipsoid.inverse_flattening;
+  const double radius = ellipsoid.semi_major_axis * axes * axes;
   const double within_facet = (1 + 2 * g0 * g0) * fine_diagonal * fine_diagonal / (8 * radius);
-
-  const double scale = static_cast<double>(std::int64_t{1} << level);
-  const double coarse_lon = fine_lon * scale;
-  const double coarse_lat = fine_lat * scale;
-  const double bow =
-      1.25 * radius / 8 * largest_sine * coarse_lon * std::hypot(largest_cosine * coarse_lon, 2 * coarse_lat);
-  return within_facet + 4 * steepest[static_cast<std::size_t>(level)] * bow;
+  return within_facet + 4 * steepest[static_cast<std::size_t>(level)] * sidewaysBow(geometry, level);
 }
 
 }  // namespace deltaz

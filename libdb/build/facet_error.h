@@ -10,9 +10,8 @@
 // fine cell's diagonal. And a coarse edge, a chord in space, bows sideways in plan by w from the line of
 // posts under it: where a fine facet lies across it, the coarse surface departs from the plane beside it by
 // at most the change of slope times w. Hence the slack
-//   (1 + 2 g0^2) d^2 / (8 R) + 4 gk w,   w = 1.25 (R/8) sin|lat| dlon sqrt((cos(lat) dlon)^2 + 4 dlat^2),
-// g0 and gk the steepest facets of levels 0 and k, dlon and dlat the coarse cell in radians (w from the
-// geodesic equation, to second order, with a quarter more for what follows).
+//   (1 + 2 g0^2) d^2 / (8 R) + 4 gk w,
+// g0 and gk the steepest facets of levels 0 and k, w the sidewaysBow of plan_shape.h.
 #pragma once
 
 #include <vector>
@@ -31,7 +30,7 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
                                       std::int32_t x, std::int32_t y);
 
 // The slack above, in metres, for level `level` >= 1. `steepest` holds the steepest facet's slope of each
-// level.
+// level. The same for all nodes of a level; on a projected grid it samples the area.
 double betweenPostsSlack(const GridGeometry& geometry, int level, const std::vector<double>& steepest);
 
 }  // namespace deltaz

@@ -59,14 +59,14 @@ double coneAngle(std::uint16_t units) {
 TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry) {
   TileSummary summary;
   NodeBounds& bounds = summary.bounds;
-  const std::vector<ColumnConstants> columns =
-      geometry.columnConstantsOf(tile.level, {tile.first_column, tile.first_column + tile.columns});
-  const std::vector<RowConstants> rows =
-      geometry.rowConstantsOf(tile.level, {tile.first_row, tile.first_row + tile.rows});
-  const auto place = [&](int i, int j) {
-    return earthCentred(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)],
-                        geometry.metres(tile.height(i, j)));
+  const std::vector<PostPlace> places =
+      geometry.postPlaces(tile.level, {tile.first_column, tile.first_column + tile.columns},
+                          {tile.first_row, tile.first_row + tile.rows});
+  const auto placeOf = [&](int i, int j) -> const PostPlace& {
+    return places[static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns) +
+                  static_cast<std::size_t>(i)];
   };
+  const auto place = [&](int i, int j) { return placeOf(i, j).at(geometry.metres(tile.height(i, j))); };
 
   Vector3 low, high;
   for (int j = 0; j < tile.rows; ++j) {
@@ -113,7 +113,7 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
       if (!tile.isValid(i, j)) continue;
       farthest = std::max(farthest, length(place(i, j) - centre));
       if (i + 1 >= tile.columns || j + 1 >= tile.rows) continue;
-      const Vector3 up = upVector(rows[static_cast<std::size_t>(j)], columns[static_cast<std::size_t>(i)]);
+      const Vector3& up = placeOf(i, j).up;
       if (tile.bottomFaceValid(i, j)) addFacet(place(i, j), place(i + 1, j), place(i + 1, j + 1), up);
       if (tile.topFaceValid(i, j)) addFacet(place(i, j), place(i + 1, j + 1), place(i, j + 1), up);
     }
