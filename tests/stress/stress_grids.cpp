@@ -116,6 +116,19 @@ TerrainTile wholeTile(const RawGrid& grid) {
   return tile;
 }
 
+RawGrid alternatingGrid(std::int32_t height, Rational quantum) {
+  SyntheticGridOptions options;
+  options.spacing_latitude = options.spacing_longitude = {3, 1};
+  options.columns = options.rows = 33;
+  options.quantum = quantum;
+  RawGrid grid = syntheticGrid(options);
+  for (std::int64_t row = 0; row < 33; ++row) {
+    for (std::int64_t column = 0; column < 33; ++column)
+      grid.heights[static_cast<std::size_t>(row * 33 + column)] = (row + column) % 3 == 0 ? height : -height;
+  }
+  return grid;
+}
+
 RawGrid projectedGrid(std::int64_t columns, std::int64_t rows, double spacing) {
   constexpr double kLatitude = 46, kLongitude = 7, kRadian = std::numbers::pi / 180;
   SyntheticGridOptions options;

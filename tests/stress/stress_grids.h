@@ -26,11 +26,15 @@ inline void PrintTo(const NamedGrid& named, std::ostream* out) {
 // Poles, antimeridian, long thin grids, least spacing, extreme ellipsoids and quanta, voids.
 std::vector<NamedGrid> extremeGrids();
 
-// A post's spacing must be a multiple of no arc-second: the axes say only how many degrees apart posts are.
+// An axis whose spacing is no fraction of an arc-second: posts `spacing` apart from the multiple at or before
+// `first` on.
 void setPlainAxis(GridAxis& axis, const AxisOrigin& origin, double first, double spacing, std::int64_t count);
 
 // All posts of a grid as one tile of level 0, with a void ring.
 TerrainTile wholeTile(const RawGrid& grid);
+
+// 33 x 33 posts 3 arc-seconds apart, of two heights that change from post to post.
+RawGrid alternatingGrid(std::int32_t height, Rational quantum);
 
 // A projected grid of columns x rows posts `spacing` metres apart near latitude 46 north, placed by a lattice
 // of control points on the ellipsoid's surface.
