@@ -33,6 +33,9 @@ class TerrainRule {
       if (record.type == NodeType::kTerrain) checkNode(number, record, report);
     });
     loader_.reportRefusedReads(context_.report);
+    if (!context_.positions_known) {
+      addSkipped(context_.report, "spheres, since the control points of a grid could not be read");
+    }
     if (!context_.tree_sound) {
       addSkipped(context_.report, "terrain against parents and neighbours, since the tree is damaged");
     }
@@ -60,8 +63,10 @@ class TerrainRule {
     IssueLocation where = whereOf(number);
     const NodeRecord& record = context_.record(number);
     const std::int64_t step = std::int64_t{1} << record.level;
-    where.longitude = context_.grids[record.grid].longitude(column * step);
-    where.latitude = context_.grids[record.grid].latitude(row * step);
+    if (!context_.positions_known) return where;
+    const GeodeticPoint post = context_.grids[record.grid].geodeticAt(column * step, row * step);
+    where.longitude = post.longitude;
+    where.latitude = post.latitude;
     return where;
   }
 
@@ -81,7 +86,7 @@ class TerrainRule {
     checkHeader(number, record, tile, report);
     checkHeights(number, record, tile, report);
     if (!context_.tree_sound || !tile.hasPosts()) return;
-    if (record.level == 0) checkSpheres(number, record, tile, report);
+    if (record.level == 0 && context_.positions_known) checkSpheres(number, record, tile, report);
     if (record.level > 0) checkSubset(number, record, tile, report);
     checkBorders(number, record, tile, report);
     checkRing(number, record, tile, report);
@@ -92,8 +97,7 @@ class TerrainRule {
     const TerrainBlock& block = tile.block;
     const double step = std::ldexp(1.0, record.level);
     std::string_view wrong;
-    if (block.spacing_x != grid.x_axis.spacing * step ||
-        block.spacing_y != grid.y_axis.spacing * step) {
+    if (block.spacing_x != grid.x_axis.spacing * step || block.spacing_y != grid.y_axis.spacing * step) {
       wrong = "its spacing is not the grid's";
     } else if (block.quantum != grid.quantum) {
       wrong = "its quantum is not the grid's";
@@ -154,16 +158,14 @@ class TerrainRule {
 
   void checkSpheres(std::uint32_t number, const NodeRecord& record, const LoadedTile& tile, Report& report) {
     const GridGeometry& geometry = context_.grids[record.grid];
-    const auto rows = geometry.rowConstantsOf(0, tile.rows);
-    const auto columns = geometry.columnConstantsOf(0, tile.columns);
+    const std::vector<PostPlace> places = geometry.postPlaces(0, tile.columns, tile.rows);
+    auto place = places.begin();
     std::vector<Vector3> positions;
     std::vector<std::pair<std::int64_t, std::int64_t>> posts;
     for (std::int64_t row = tile.rows.begin; row < tile.rows.end; ++row) {
-      for (std::int64_t column = tile.columns.begin; column < tile.columns.end; ++column) {
+      for (std::int64_t column = tile.columns.begin; column < tile.columns.end; ++column, ++place) {
         if (!tile.isValid(column, row)) continue;
-        positions.push_back(earthCentred(rows[static_cast<std::size_t>(row - tile.rows.begin)],
-                                         columns[static_cast<std::size_t>(column - tile.columns.begin)],
-                                         geometry.metres(tile.height(column, row))));
+        positions.push_back(place->at(geometry.metres(tile.height(column, row))));
         posts.emplace_back(column, row);
       }
     }

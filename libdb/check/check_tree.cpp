@@ -36,11 +36,12 @@ class TreeRule {
     walk();
     placeNodes();
     context_.tree_sound = context_.report.count(Severity::kError) == errors;
-    checkHeader();
     if (!context_.tree_sound) {
-      addSkipped(context_.report, "what nodes say of the nodes below them, since the tree is damaged");
+      addSkipped(context_.report,
+                 "the area's bounds and what nodes say of the nodes below them, since the tree is damaged");
       return;
     }
+    checkHeader();
     for (std::uint32_t number = 1; number <= count(); ++number) checkSummary(number);
   }
 
@@ -276,21 +277,47 @@ class TreeRule {
     }
   }
 
-  // What area.json says of the whole area must follow from its grids.
+  // What area.json says of the whole area must follow from its grids: no outermost post lies outside the
+  // bounds, and each bound is reached by one. A pole inside a projected grid is a bound by itself.
   void checkHeader() {
-    if (context_.grids.size() != 1) return;
-    const GridGeometry& geometry = context_.grids[0];
+    if (!context_.positions_known) return;
     const AreaHeader& area = context_.area;
-    const GridAxis& longitude = geometry.header().x_axis;
-    const GridAxis& latitude = geometry.header().y_axis;
-    const auto differ = [](double a, double b) { return std::abs(std::remainder(a - b, 360.0)) > 1e-9; };
-    if (differ(area.west, geometry.longitude(longitude.first)) ||
-        differ(area.east, geometry.longitude(longitude.first + longitude.count - 1)) ||
-        differ(area.south, geometry.latitude(latitude.first)) ||
-        differ(area.north, geometry.latitude(latitude.first + latitude.count - 1))) {
+    constexpr double kDegreeTolerance = 1e-9;
+    bool outside = false, north = area.north == 90, south = area.south == -90;
+    bool west = area.east - area.west >= 360, east = west;
+    const auto see = [&](const GeodeticPoint& post) {
+      // How far east of the western bound: a hair west of it counts as on it.
+      double from_west = std::fmod(post.longitude - area.west, 360.0);
+      if (from_west < -kDegreeTolerance) from_west += 360;
+      if (from_west > 360 - kDegreeTolerance) from_west -= 360;
+      const double width = area.east - area.west;
+      outside = outside || from_west > width + kDegreeTolerance ||
+                post.latitude > area.north + kDegreeTolerance ||
+                post.latitude < area.south - kDegreeTolerance;
+      west = west || std::abs(from_west) <= kDegreeTolerance;
+      east = east || std::abs(from_west - width) <= kDegreeTolerance;
+      north = north || std::abs(post.latitude - area.north) <= kDegreeTolerance;
+      south = south || std::abs(post.latitude - area.south) <= kDegreeTolerance;
+    };
+    for (const GridGeometry& geometry : context_.grids) {
+      const PostRange columns = geometry.columnsAt(0), rows = geometry.rowsAt(0);
+      const bool geodetic = geometry.isGeodetic();
+      // The corners of a geodetic grid are its bounds; a projected one may bulge anywhere along its sides.
+      const std::int64_t column_step = geodetic ? columns.size() - 1 : 1;
+      const std::int64_t row_step = geodetic ? rows.size() - 1 : 1;
+      for (std::int64_t column = columns.begin; column < columns.end; column += column_step) {
+        see(geometry.geodeticAt(column, rows.begin));
+        see(geometry.geodeticAt(column, rows.end - 1));
+      }
+      for (std::int64_t row = rows.begin; row < rows.end; row += row_step) {
+        see(geometry.geodeticAt(columns.begin, row));
+        see(geometry.geodeticAt(columns.end - 1, row));
+      }
+    }
+    if (outside || !west || !east || !north || !south) {
       IssueLocation where;
       where.file = std::string(kAreaFileName);
-      context_.report.add(makeIssue(IssueCode::kManField, "the bounds are not those of the grid", where));
+      context_.report.add(makeIssue(IssueCode::kManField, "the bounds are not those of the grids", where));
     }
   }
 
@@ -380,11 +407,17 @@ IssueLocation CheckContext::locate(std::uint32_t number) const {
   where.y = node.y;
   const GridGeometry& geometry = grids[node.grid];
   if (node.level >= geometry.header().level_count) return where;
-  const double leaf = static_cast<double>(geometry.header().leaf_cells) * std::ldexp(1.0, node.level);
-  const GridAxis& longitude = geometry.header().x_axis;
-  const GridAxis& latitude = geometry.header().y_axis;
-  where.longitude = -180.0 + ((node.x + 0.5) * leaf + longitude.phase) * longitude.spacing;
-  where.latitude = -90.0 + ((node.y + 0.5) * leaf + latitude.phase) * latitude.spacing;
+  if (!positions_known) return where;
+  const auto middle = [&](std::int32_t index, PostRange all) {
+    // In floating point: a damaged position may be any number.
+    const double span = std::ldexp(geometry.header().leaf_cells, node.level);
+    return static_cast<std::int64_t>(
+        std::clamp((index + 0.5) * span, static_cast<double>(all.begin), static_cast<double>(all.end - 1)));
+  };
+  const GeodeticPoint post =
+      geometry.geodeticAt(middle(node.x, geometry.columnsAt(0)), middle(node.y, geometry.rowsAt(0)));
+  where.longitude = post.longitude;
+  where.latitude = post.latitude;
   return where;
 }
 
