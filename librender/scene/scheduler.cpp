@@ -29,7 +29,7 @@ class Scheduler {
   // Error bounds of what the node itself draws, in pixels.
   double ownError(const Node& node) const {
     if (node.record.level == 0) return 0;
-    const double worse = node.geometricError();
+    const double worse = std::max(node.geometricError(), node.coverageError());
     return projectedErrorBound(view_, node.centroid, node.radius(), worse);
   }
 

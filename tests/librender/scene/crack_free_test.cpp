@@ -122,21 +122,32 @@ TEST(CrackFree, no_view_of_a_synthetic_area_has_a_crack) {
   }
 }
 
-// Country where both errors meet: in the west posts that only level 1 has are raised by `rise`, up to and on
-// the line between two coarse nodes; in the east, posts that only level 0 has. Level 2 is good enough in the
-// west and level 1 in the east, each by itself; beside the line the east's face errs by its own error and by
-// half of what the line moved.
+// Country where both errors meet. Every post is the middle of an edge of the next coarser level, plus a rise:
+// in the west, up to and on the line between two coarse nodes, `rise` on the posts that level 1 adds, so that
+// level 2 is good enough; in the east on those that level 0 adds, so that level 1 is. Rises of 400 keep
+// either from being drawn coarser. Beside the line the east's faces err by their own error and by half of
+// what the line moved.
 RawGrid countryOfTwoErrors(std::int32_t rise) {
   SyntheticGridOptions options = smallArea();
   options.west = -122;
   options.columns = 129;
   options.rows = 65;
   RawGrid grid = syntheticGrid(options);
-  for (std::int64_t row = 0; row < options.rows; ++row) {
-    for (std::int64_t column = 0; column < options.columns; ++column) {
-      const bool level_1 = column % 2 == 0 && row % 2 == 0, level_2 = column % 4 == 0 && row % 4 == 0;
-      const bool raised = column <= 64 ? level_1 && !level_2 : !level_1;
-      grid.heights[static_cast<std::size_t>(row * options.columns + column)] = 500 + (raised ? rise : 0);
+  const auto at = [&](std::int64_t column, std::int64_t row) -> std::int32_t& {
+    return grid.heights[static_cast<std::size_t>(row * options.columns + column)];
+  };
+  std::fill(grid.heights.begin(), grid.heights.end(), 500);
+  constexpr std::int64_t kLine = 64;
+  for (std::int64_t step = 4; step > 0; step /= 2) {
+    for (std::int64_t row = 0; row < options.rows; row += step) {
+      for (std::int64_t column = 0; column < options.columns; column += step) {
+        const std::int64_t dx = column % (2 * step), dy = row % (2 * step);
+        if (dx == 0 && dy == 0) continue;
+        const std::int32_t middle = (at(column - dx, row - dy) + at(column + dx, row + dy)) / 2;
+        const std::int32_t in_west = step == 2 ? rise : step == 4 && column < kLine ? 400 : 0;
+        const std::int32_t in_east = step == 1 ? rise : step == 2 ? 400 : 0;
+        at(column, row) = middle + (column <= kLine ? in_west : in_east);
+      }
     }
   }
   return grid;
@@ -145,7 +156,7 @@ RawGrid countryOfTwoErrors(std::int32_t rise) {
 TEST(CrackFree, strips_break_the_contract_unless_they_are_tested) {
   const MemoryDatabase memory = makeDatabaseOf(countryOfTwoErrors(24), 8);
   // From the south, 200 km away, where a pixel is 27 m.
-  Camera camera{{45.0, -121.95, 3000}, 0, 0, 0, 2, 256, 192};
+  Camera camera{{45.0, -121.947, 3000}, 0, -1.6, 0, 3, 384, 192};
   const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
   const FullResolution full(memory.database, 0);
   std::array<ContractFinding, 2> findings;
