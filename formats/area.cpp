@@ -26,7 +26,7 @@ constexpr std::int64_t kMaximumPostIndex = std::int64_t{1} << 40;
 constexpr std::int64_t kMaximumPostCount = std::int64_t{1} << 31;
 constexpr int kMaximumLevels = 32;
 
-constexpr std::array<std::string_view, 3> kRoleNames = {"nodes", "terrain", "patches"};
+constexpr std::array<std::string_view, 4> kRoleNames = {"nodes", "terrain", "patches", "seams"};
 constexpr std::size_t kMaximumSentinels = 64;
 
 std::span<const std::byte> asBytes(std::string_view text) {
@@ -341,7 +341,7 @@ FileReference readFile(const Json& json, const std::string& path, std::string& f
   const std::string role = members.text("role");
   const auto known = std::find(kRoleNames.begin(), kRoleNames.end(), role);
   if (known == kRoleNames.end()) {
-    members.fail("role", "is none of nodes, terrain, patches");
+    members.fail("role", "is none of nodes, terrain, patches, seams");
   } else {
     file.role = static_cast<FileRole>(known - kRoleNames.begin());
   }

@@ -129,9 +129,9 @@ struct GridHeader {
   bool operator==(const GridHeader&) const = default;
 };
 
-enum class FileRole : std::uint8_t { kNodes, kTerrain, kPatches };
+enum class FileRole : std::uint8_t { kNodes, kTerrain, kPatches, kSeams };
 
-// "nodes", "terrain", "patches".
+// "nodes", "terrain", "patches", "seams".
 std::string_view fileRoleName(FileRole role);
 
 struct FileReference {

@@ -9,7 +9,8 @@
 namespace deltaz {
 
 // Families: IO files, HDR headers and footers, IDX block index, SUM checksums, MAN area.json, REF node
-// references, TILE node record against its terrain, HGT heights, SRC database against source.
+// references, TILE node record against its terrain, HGT heights, ERR stored errors, SRC database against
+// source.
 #define DELTAZ_ISSUE_CODES(X)                    \
   X(kIoCannotRead, "IO_CANNOT_READ")             \
   X(kIoMissingFile, "IO_MISSING_FILE")           \
@@ -41,11 +42,19 @@ namespace deltaz {
   X(kTileHeightRange, "TILE_HEIGHT_RANGE")       \
   X(kTileVoids, "TILE_VOIDS")                    \
   X(kTileSphere, "TILE_SPHERE")                  \
+  X(kTileCone, "TILE_CONE")                      \
+  X(kTileNormal, "TILE_NORMAL")                  \
+  X(kTileLod, "TILE_LOD")                        \
   X(kHgtDecode, "HGT_DECODE")                    \
   X(kHgtSubset, "HGT_SUBSET")                    \
   X(kHgtRing, "HGT_RING")                        \
   X(kHgtBorder, "HGT_BORDER")                    \
   X(kHgtPatches, "HGT_PATCHES")                  \
+  X(kErrGeometric, "ERR_GEOMETRIC")              \
+  X(kErrRms, "ERR_RMS")                          \
+  X(kErrAncestor, "ERR_ANCESTOR")                \
+  X(kErrCoverage, "ERR_COVERAGE")                \
+  X(kHgtSeam, "HGT_SEAM")                        \
   X(kSrcHeight, "SRC_HEIGHT")                    \
   X(kSrcVoid, "SRC_VOID")                        \
   X(kSrcExtent, "SRC_EXTENT")                    \

@@ -135,6 +135,18 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
       database.patch_files_.push_back(std::move(reader));
       continue;
     }
+    if (reference.role == FileRole::kSeams) {
+      if (database.seam_file_)
+        return invalidError(IssueCode::kManField, area_path, "two files of seams are listed");
+      for (std::uint32_t block = 0; block < reader->blockCount(); ++block) {
+        DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, reader->read(block, BlockType::kSeam));
+        DELTAZ_TRY_ASSIGN(Seam seam, decodeSeam(bytes, database.area_.grids,
+                                                fmt::format("{}, block {}", reader->path(), block)));
+        database.seams_.push_back(std::move(seam));
+      }
+      database.seam_file_ = std::move(reader);
+      continue;
+    }
     if (reference.segment != database.segments_.size()) {
       return invalidError(IssueCode::kManField, area_path, "the terrain segments are not numbered in order");
     }
@@ -272,6 +284,7 @@ std::uint64_t Database::bytesRead() const {
   std::uint64_t bytes = area_bytes_ + nodes_->bytesRead();
   for (const auto& segment : segments_) bytes += segment->bytesRead();
   for (const auto& file : patch_files_) bytes += file->bytesRead();
+  if (seam_file_) bytes += seam_file_->bytesRead();
   return bytes;
 }
 

@@ -15,6 +15,7 @@
 #include "formats/container.h"
 #include "formats/file_system.h"
 #include "formats/node_file.h"
+#include "formats/seam.h"
 #include "formats/terrain_segment.h"
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/terrain_tile.h"
@@ -60,6 +61,9 @@ class Database {
   // Bytes read from all files since open.
   std::uint64_t bytesRead() const;
 
+  // How grids that overlap or touch meet; each an upper and a lower grid.
+  const std::vector<Seam>& seams() const { return seams_; }
+
   // The files behind it, for dbcheck.
   const ContainerReader& nodeFile() const { return *nodes_; }
   const ContainerReader* terrainSegment(std::uint32_t segment) const;
@@ -77,6 +81,8 @@ class Database {
   std::unique_ptr<ContainerReader> nodes_;
   std::vector<std::unique_ptr<ContainerReader>> segments_;  // by segment number
   std::vector<std::unique_ptr<ContainerReader>> patch_files_;
+  std::unique_ptr<ContainerReader> seam_file_;
+  std::vector<Seam> seams_;
   struct PageCache {
     std::mutex mutex;
     std::vector<std::shared_ptr<const std::vector<NodeRecord>>> pages;

@@ -12,6 +12,8 @@ ContentKind contentKindOf(FileRole role) {
       return ContentKind::kTerrain;
     case FileRole::kPatches:
       return ContentKind::kPatches;
+    case FileRole::kSeams:
+      return ContentKind::kSeams;
   }
   return ContentKind::kTerrain;
 }

@@ -19,6 +19,7 @@ constexpr Severity kError = Severity::kError;
 constexpr CheckLevel kStructure = CheckLevel::kStructure;
 constexpr CheckLevel kChecksum = CheckLevel::kChecksum;
 constexpr CheckLevel kDecode = CheckLevel::kDecode;
+constexpr CheckLevel kGeometry = CheckLevel::kGeometry;
 
 constexpr std::array kRegistry = {
     CodeDescription{
@@ -154,6 +155,22 @@ constexpr std::array kRegistry = {
                     "the edge of the picture.",
                     kRebuild, "node_file.md 2"},
     CodeDescription{
+        IssueCode::kTileCone, kError, kGeometry, "a normal cone leaves out a facet or is too wide",
+        "The cone of a node must hold the normal of every facet of the node and below it: whoever "
+        "skips nodes that face away would skip what can be seen. One that is wider than its own "
+        "facets and its children's cones need makes skipping useless.",
+        kRebuild, "node_file.md 2"},
+    CodeDescription{
+        IssueCode::kTileNormal, kError, kGeometry, "a normal is not that of the facets",
+        "The mean normal of a node is not the mean of its own facets, weighted with their areas; or "
+        "a vertex normal on the border of two nodes differs between them, and the seam shows.",
+        kRebuild, "node_file.md 2"},
+    CodeDescription{
+        IssueCode::kTileLod, kError, kGeometry, "LOD ranges are no ranges",
+        "The distances between which a node is drawn must be numbers, not negative, the nearer one "
+        "first.",
+        kRebuild, "node_file.md 2"},
+    CodeDescription{
         IssueCode::kHgtDecode, kError, kDecode, "a node's terrain cannot be decoded",
         "The block is intact but its contents break the rules of the delta-z array or of its packing.",
         kRebuild, "terrain_segment.md 5"},
@@ -177,8 +194,34 @@ constexpr std::array kRegistry = {
         IssueCode::kHgtPatches, kError, kStructure,
         "the control points of a projected grid are damaged or missing",
         "A projected grid needs a lattice of control points that places its posts on the Earth; there "
-        "are not as many as area.json announces, or one is nowhere near the Earth.",
+        "are not as many as area.json announces, one is nowhere near the Earth, or (level geometry) one lies "
+        "beside the ellipsoid or out of line with its neighbours.",
         kRebuild, "patch_lattice.md 1"},
+    CodeDescription{
+        IssueCode::kHgtSeam, kError, kStructure, "a seam between two grids is damaged",
+        "The file of seams says how grids that overlap meet: which faces are drawn instead of those "
+        "along the edge. One of its parts leads outside its grids, or the parts do not add up.",
+        kRebuild, "seam.md 1"},
+    CodeDescription{IssueCode::kErrGeometric, kError, kGeometry, "a geometric error is wrong",
+                    "What a node is said to differ from full resolution at most was recomputed at every post "
+                    "and at points between them. It is too small, so that a picture is less exact than its "
+                    "tolerance says, or larger than the definition allows.",
+                    kRebuild, "node_file.md 3"},
+    CodeDescription{IssueCode::kErrRms, kError, kGeometry, "an RMS error is wrong",
+                    "The root mean square of a node's differences from full resolution, recomputed over all "
+                    "posts, is another.",
+                    kRebuild, "node_file.md 3"},
+    CodeDescription{
+        IssueCode::kErrAncestor, kError, kGeometry, "a leaf's error against a coarser level is wrong",
+        "Leaves keep the largest difference, the sum of squares and the number of posts compared "
+        "for each level above them, so that an edit need not read the whole area. Recomputed they "
+        "are others: the next edit would write wrong errors.",
+        kRebuild, "terrain_segment.md 4"},
+    CodeDescription{IssueCode::kErrCoverage, kError, kGeometry, "a coverage error is wrong",
+                    "How far the region a node draws lies from the region valid at full resolution was "
+                    "recomputed. The stored distance is too small, so that land ends or begins in the wrong "
+                    "place in pictures that should show it right, or larger than the definition allows.",
+                    kRebuild, "node_file.md 4"},
     CodeDescription{IssueCode::kSrcHeight, kError, kDecode, "a height differs from the source",
                     "Database and source have different heights at the same post. One of them was changed, "
                     "or this is not "
