@@ -56,8 +56,11 @@ struct IssueGroup {
 
 struct CheckOptions {
   CheckLevel level = CheckLevel::kDecode;
-  const RawGrid* against = nullptr;  // the source, already read; compared with grid 0
-  std::string against_name;
+  // Grids of the sources, already read, one after the other in memory: each is compared with the grid of the
+  // database that has its posts.
+  const RawGrid* against = nullptr;
+  std::size_t against_count = 1;
+  std::string against_name;  // for messages
   int threads = 0;
 };
 

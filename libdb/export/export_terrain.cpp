@@ -11,12 +11,15 @@
 
 #include "formats/file_system.h"
 #include "libdb/source/gdal_session.h"
+#include "libdb/source/height_units.h"
+#include "libdb/source/reference_system.h"
+#include "libdb/source/stored_values.h"
 
 namespace deltaz {
 
 namespace {
 
-// Used where a coarser level has voids and the source declared no sentinel.
+// Used where a grid has voids and nothing says what stood there.
 constexpr double kDefaultNodata = -32768;
 
 // What the axis of the area becomes at `level`.
@@ -31,9 +34,20 @@ GridAxis axisAt(const GridAxis& axis, PostRange posts, int level) {
   return coarse;
 }
 
+struct Origins {
+  AxisOrigin x, y;
+};
+Origins originsOf(const GridHeader& header) {
+  if (header.kind == "geodetic") return {kLongitudeOrigin, kLatitudeOrigin};
+  return {kProjectedOrigin, kProjectedOrigin};
+}
+
+// Posts are the middles of pixels.
 std::array<double, 6> geotransformOf(const GridHeader& header) {
-  const double west = postCoordinate(header.x_axis, kLongitudeOrigin, header.x_axis.first);
-  const double north = postCoordinate(header.y_axis, kLatitudeOrigin, header.y_axis.first + header.y_axis.count - 1);
+  const Origins origins = originsOf(header);
+  const double west = postCoordinate(header.x_axis, origins.x, header.x_axis.first);
+  const double north =
+      postCoordinate(header.y_axis, origins.y, header.y_axis.first + header.y_axis.count - 1);
   return {west - 0.5 * header.x_axis.spacing,
           header.x_axis.spacing,
           0,
@@ -42,47 +56,155 @@ std::array<double, 6> geotransformOf(const GridHeader& header) {
           -header.y_axis.spacing};
 }
 
+// The same in the words of the first source, as far as it goes: its own numbers, moved by whole posts.
+std::array<double, 6> geotransformLike(const SourceDescription& source, const GridHeader& header) {
+  std::array<double, 6> transform = source.geotransform;
+  const std::array<double, 6> exact = geotransformOf(header);
+  const bool south_up = transform[5] > 0;
+  const double rows = static_cast<double>(header.y_axis.count);
+  const double first_row = south_up ? exact[3] + rows * exact[5] : exact[3];
+  double columns_off = (exact[0] - transform[0]) / transform[1];
+  const double turn = 360 / transform[1];
+  if (header.kind == "geodetic") columns_off -= turn * std::round(columns_off / turn);
+  transform[0] += std::round(columns_off) * transform[1];
+  transform[3] += std::round((first_row - transform[3]) / transform[5]) * transform[5];
+  return transform;
+}
+
+// How a grid is stored in the file.
+struct Storage {
+  SourceDescription like;  // scale, offset, unit, nodata
+  StoredType type;
+  Rational unit;  // metres
+  std::array<double, 6> geotransform{};
+  bool one_sentinel = false;  // all voids are written as like.nodata
+};
+
+// The smallest type of whole numbers that holds those of all sources; the type itself if they agree.
+std::string commonType(const std::vector<SourceDescription>& sources) {
+  const std::string& first = sources.front().data_type;
+  double lowest = 0, highest = 0;
+  bool same = true;
+  for (const SourceDescription& source : sources) {
+    same = same && source.data_type == first;
+    const StoredType type = storedTypeOf(source.data_type).value_or(StoredType{});
+    lowest = std::min(lowest, type.lowest);
+    highest = std::max(highest, type.highest);
+  }
+  if (same) return first;
+  for (const char* const name : {"Int16", "UInt16", "Int32", "UInt32", "Int64"}) {
+    const StoredType type = *storedTypeOf(name);
+    if (type.lowest <= lowest && type.highest >= highest) return name;
+  }
+  return "Float64";
+}
+
+Result<Storage> storageOf(const RawGrid& grid, int level, const std::string& target) {
+  const GridHeader& header = grid.header;
+  Storage storage;
+  storage.geotransform = geotransformOf(header);
+  if (header.sources.empty() || header.resampling) {
+    // No source has these posts: metres, in a type that holds them.
+    storage.like.data_type = header.resampling ? "Float32" : "Int32";
+    storage.like.unit = "m";
+    if (!header.sentinels.empty()) storage.like.nodata = header.sentinels.front();
+  } else {
+    storage.like = header.sources.front();
+    storage.like.data_type = commonType(header.sources);
+    storage.one_sentinel = header.sources.size() > 1;
+    if (level == 0) storage.geotransform = geotransformLike(storage.like, header);
+    if (storage.one_sentinel && !storage.like.nodata && !header.sentinels.empty())
+      storage.like.nodata = header.sentinels.front();
+  }
+  if (!storage.like.nodata && header.sentinels.empty() && !grid.valid.empty())
+    storage.like.nodata = kDefaultNodata;
+  const std::optional<StoredType> type = storedTypeOf(storage.like.data_type);
+  if (!type) {
+    return invalidError(IssueCode::kManField, target,
+                        fmt::format("'{}' is no type of elevations", storage.like.data_type),
+                        "area.json names it as its source's");
+  }
+  storage.type = *type;
+  std::string unit = storage.like.unit;
+  if (unit.empty()) {
+    if (const auto system = parseReferenceSystem(header.crs_wkt, target); system.ok())
+      unit = system.value().vertical_unit;
+  }
+  const std::optional<Rational> metres = metresPerUnit(unit);
+  if (!metres) {
+    return invalidError(IssueCode::kManField, target, fmt::format("the elevation unit '{}' is unknown", unit),
+                        "area.json names it as its source's");
+  }
+  storage.unit = *metres;
+  return storage;
+}
+
+Result<double> voidValue(const RawGrid& grid, const Storage& storage, std::size_t post,
+                         const std::string& target) {
+  const std::vector<double>& sentinels = grid.header.sentinels;
+  const std::size_t kind = grid.void_kinds.empty() ? 0 : grid.void_kinds[post];
+  if (!storage.one_sentinel && kind < sentinels.size()) return sentinels[kind];
+  if (storage.like.nodata) return *storage.like.nodata;
+  return invalidError(IssueCode::kHgtDecode, target, fmt::format("a void is of kind {}", kind),
+                      "the grid has no such sentinel");
+}
+
+bool setNodata(GDALRasterBand& band, double nodata) {
+  if (band.GetRasterDataType() == GDT_Int64)
+    return band.SetNoDataValueAsInt64(static_cast<std::int64_t>(nodata)) == CE_None;
+  if (band.GetRasterDataType() == GDT_UInt64)
+    return band.SetNoDataValueAsUInt64(static_cast<std::uint64_t>(nodata)) == CE_None;
+  return band.SetNoDataValue(nodata) == CE_None;
+}
+
 Status writeRaster(const RawGrid& grid, int level, const std::string& path, const std::string& target,
                    const GdalSession& session) {
   const GridHeader& header = grid.header;
-  const SourceDescription source = header.sources.empty() ? SourceDescription{} : header.sources.front();
+  DELTAZ_TRY_ASSIGN(Storage storage, storageOf(grid, level, target));
+  const SourceDescription& like = storage.like;
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   if (driver == nullptr) return internalError(target, "GDAL has no GeoTIFF driver");
-  GDALDataType type = GDALGetDataTypeByName(source.data_type.c_str());
-  if (type == GDT_Unknown) type = GDT_Int32;
+  const GDALDataType type = GDALGetDataTypeByName(like.data_type.c_str());
   const int columns = static_cast<int>(header.x_axis.count);
   const int rows = static_cast<int>(header.y_axis.count);
   CPLStringList creation;
   creation.SetNameValue("COMPRESS", "DEFLATE");
-  creation.SetNameValue("PREDICTOR", "2");
+  creation.SetNameValue("PREDICTOR", storage.type.floating ? "3" : "2");
+  creation.SetNameValue("BIGTIFF", "IF_SAFER");
   GDALDatasetUniquePtr dataset(driver->Create(path.c_str(), columns, rows, 1, type, creation.List()));
   if (!dataset) return accessError(target, "cannot create the file", session.lastFailure());
 
-  std::array<double, 6> transform =
-      level == 0 && !header.sources.empty() ? source.geotransform : geotransformOf(header);
-  const bool south_up = transform[5] > 0;
+  const bool south_up = storage.geotransform[5] > 0;
   OGRSpatialReference reference;
   reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   bool failed = reference.importFromWkt(header.crs_wkt.c_str()) != OGRERR_NONE;
   if (header.coordinate_epoch) reference.SetCoordinateEpoch(*header.coordinate_epoch);
   failed = failed || dataset->SetSpatialRef(&reference) != CE_None;
-  failed = failed || dataset->SetGeoTransform(transform.data()) != CE_None;
+  failed = failed || dataset->SetGeoTransform(storage.geotransform.data()) != CE_None;
   failed = failed ||
            dataset->SetMetadataItem(GDALMD_AREA_OR_POINT,
-                                    source.point_registered ? GDALMD_AOP_POINT : GDALMD_AOP_AREA) != CE_None;
+                                    like.point_registered ? GDALMD_AOP_POINT : GDALMD_AOP_AREA) != CE_None;
   GDALRasterBand& band = *dataset->GetRasterBand(1);
-  const double nodata = source.nodata.value_or(kDefaultNodata);
-  if (source.nodata || !grid.valid.empty()) failed = failed || band.SetNoDataValue(nodata) != CE_None;
-  if (!source.unit.empty()) failed = failed || band.SetUnitType(source.unit.c_str()) != CE_None;
+  if (like.nodata) failed = failed || !setNodata(band, *like.nodata);
+  if (!like.unit.empty()) failed = failed || band.SetUnitType(like.unit.c_str()) != CE_None;
+  if (like.scale != 1) failed = failed || band.SetScale(like.scale) != CE_None;
+  if (like.offset != 0) failed = failed || band.SetOffset(like.offset) != CE_None;
 
-  std::vector<std::int32_t> line(static_cast<std::size_t>(columns));
+  const StoredValues stored(like, storage.type, storage.unit, header.quantum);
+  std::vector<double> line(static_cast<std::size_t>(columns));
   for (int row = 0; row < rows && !failed; ++row) {
     for (int column = 0; column < columns; ++column) {
-      line[static_cast<std::size_t>(column)] =
-          grid.isValid(column, row) ? grid.height(column, row) : static_cast<std::int32_t>(nodata);
+      double& value = line[static_cast<std::size_t>(column)];
+      if (grid.isValid(column, row)) {
+        value = stored.storedOf(static_cast<double>(grid.height(column, row)));
+        continue;
+      }
+      const auto post = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                        static_cast<std::size_t>(column);
+      DELTAZ_TRY_ASSIGN(value, voidValue(grid, storage, post, target));
     }
     const int target_row = south_up ? row : rows - 1 - row;
-    failed = band.RasterIO(GF_Write, 0, target_row, columns, 1, line.data(), columns, 1, GDT_Int32, 0, 0,
+    failed = band.RasterIO(GF_Write, 0, target_row, columns, 1, line.data(), columns, 1, GDT_Float64, 0, 0,
                            nullptr) != CE_None;
   }
   // A full disk may show only when the last blocks are written.
@@ -125,6 +247,7 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
   }
   grid.heights.assign(static_cast<std::size_t>(columns.size() * rows.size()), 0);
   std::vector<std::uint8_t> valid(grid.heights.size(), 0);
+  std::vector<std::uint8_t> kinds;
   std::uint64_t posts = 0;
   for (const Node& node : nodes) {
     DELTAZ_TRY_ASSIGN(const TerrainTile tile, database.terrain(node));
@@ -135,6 +258,10 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
             static_cast<std::size_t>(row * columns.size() + tile.first_column + i - columns.begin);
         grid.heights[at] = tile.height(i, j);
         valid[at] = tile.isValid(i, j) ? 1 : 0;
+        if (!tile.void_kinds.empty() && tile.void_kinds[tile.index(i, j)] != 0) {
+          if (kinds.empty()) kinds.assign(grid.heights.size(), 0);
+          kinds[at] = tile.void_kinds[tile.index(i, j)];
+        }
         ++posts;
       }
     }
@@ -145,6 +272,8 @@ Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
                         fmt::format("level {} does not cover the area", level));
   }
   if (std::find(valid.begin(), valid.end(), std::uint8_t{0}) != valid.end()) grid.valid = std::move(valid);
+  grid.void_kinds = std::move(kinds);
+  grid.patches = level == 0 ? geometry.patches() : nullptr;
   return grid;
 }
 

@@ -1,6 +1,7 @@
 // Writes a grid of a database back as GeoTIFF: level 0 post for post and void for void as the source had
-// them, with its georeferencing, sentinel, data type and unit. Coarser levels get a georeferencing of their
-// own.
+// them, with its georeferencing, sentinels, data type, unit, scale and offset. A grid joined from several
+// sources is written whole, with the first one's properties and one sentinel; a resampled one as Float32
+// metres. Coarser levels get a georeferencing of their own.
 //
 // The file appears under its name complete or not at all. Errors: kUsage (target exists, no such level or
 // grid), kCannotAccess, and whatever reading the database reports.

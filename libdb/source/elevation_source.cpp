@@ -1,345 +1,258 @@
 #include "libdb/source/elevation_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
-#include <limits>
-#include <ogr_spatialref.h>
+#include <new>
 
-#include "formats/file_system.h"
-#include "formats/terrain_segment.h"
+#include "libdb/access/grid_geometry.h"
 #include "libdb/source/gdal_session.h"
+#include "libdb/source/grid_cutting.h"
 #include "libdb/source/grid_placement.h"
+#include "libdb/source/mosaic.h"
+#include "libdb/source/patch_fitting.h"
+#include "libdb/source/reference_system.h"
+#include "libdb/source/resampling.h"
+#include "libdb/source/source_error.h"
+#include "libdb/source/source_opening.h"
+#include "libdb/source/source_raster.h"
+#include "libdb/source/void_filling.h"
 
 namespace deltaz {
 
 namespace {
 
-constexpr double kDegreesTolerance = 1e-9;
-constexpr int kRowsPerRead = 256;
+constexpr double kMetresPerDegree = 111319.49;
 
-Error refused(const std::string& path, std::string what, std::string why = {}, std::string remedy = {}) {
-  return invalidError(IssueCode::kNone, path, std::move(what), std::move(why), std::move(remedy));
-}
+class AreaReader {
+ public:
+  explicit AreaReader(const SourceOptions& options) : options_(options) {}
 
-bool endsIn(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && std::equal(end.rbegin(), end.rend(), text.rbegin(), [](char a, char b) {
-           return a == std::tolower(static_cast<unsigned char>(b));
-         });
-}
-
-// The one raster inside a zip archive that its driver does not read by itself.
-std::string rasterInsideZip(const std::string& path) {
-  const std::string folder = "/vsizip/" + path;
-  const CPLStringList names(VSIReadDir(folder.c_str()));
-  std::string found;
-  for (int i = 0; i < names.size(); ++i) {
-    const std::string candidate = folder + "/" + names[i];
-    if (GDALIdentifyDriver(candidate.c_str(), nullptr) == nullptr) continue;
-    if (!found.empty()) return {};
-    found = candidate;
+  Result<SourceArea> run(std::span<const std::string> paths) {
+    if (paths.empty()) return usageError("DEM", "no source is named");
+    DELTAZ_TRY(readRasters(paths));
+    DELTAZ_TRY(chooseDatum());
+    DELTAZ_TRY_ASSIGN(rasters_, joinRasters(std::move(rasters_), result_.warnings));
+    compareVerticalDatums();
+    if (options_.bounds) DELTAZ_TRY(cut());
+    for (SourceRaster& raster : rasters_) DELTAZ_TRY(placeOnEarth(raster));
+    const bool resampled = options_.grid != "source" || options_.spacing;
+    if (resampled) DELTAZ_TRY(resample());
+    if (options_.voids == VoidPolicy::kFill) DELTAZ_TRY(fill());
+    std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
+      return spacingInMetres(a) < spacingInMetres(b);
+    });
+    for (SourceRaster& raster : rasters_) result_.grids.push_back(std::move(raster.grid));
+    return std::move(result_);
   }
-  return found;
-}
 
-Result<GDALDatasetUniquePtr> openRaster(const std::string& path, const GdalSession& session) {
-  VSIStatBufL status;
-  if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) !=
-      0) {
-    return accessError(path, "cannot open the source", "there is no such file");
+ private:
+  Status readRasters(std::span<const std::string> paths) {
+    for (const std::string& path : paths) {
+      DELTAZ_TRY_ASSIGN(const std::vector<std::string> behind, rastersBehind(path));
+      for (const std::string& raster : behind) {
+        DELTAZ_TRY_ASSIGN(SourceRaster read, readSourceRaster(raster, options_, result_.warnings));
+        rasters_.push_back(std::move(read));
+      }
+    }
+    return Success{};
   }
-  if (!VSI_ISDIR(status.st_mode) && !VSI_ISREG(status.st_mode))
-    return refused(path, "the source is not a regular file", {}, "Copy it into one");
-  if (VSI_ISDIR(status.st_mode))
-    return refused(path, "a folder is not an elevation source", {}, "Name the file in it");
-  if (status.st_size == 0) return refused(path, "the source is empty", "the file has no bytes");
-  VSILFILE* readable = VSIFOpenL(path.c_str(), "rb");
-  if (readable == nullptr)
-    return accessError(path, "cannot open the source", "it cannot be read", "Check its permissions");
-  VSIFCloseL(readable);
-  constexpr unsigned kOpenFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
-  GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), kOpenFlags));
-  if (!dataset && endsIn(path, ".zip")) {
-    if (const std::string inside = rasterInsideZip(path); !inside.empty()) {
-      dataset.reset(GDALDataset::Open(inside.c_str(), kOpenFlags));
+
+  // All grids of an area refer to one datum: that of the target system, else of the first source.
+  Status chooseDatum() {
+    if (!options_.datum.empty()) {
+      DELTAZ_TRY_ASSIGN(const ReferenceSystem given, parseReferenceSystem(options_.datum, "datum"));
+      DELTAZ_TRY_ASSIGN(area_, geographicOf(given, "datum"));
+      return Success{};
+    }
+    if (options_.grid != "source" && options_.grid != "geodetic") {
+      DELTAZ_TRY_ASSIGN(const ReferenceSystem target, parseReferenceSystem(options_.grid, "--grid"));
+      DELTAZ_TRY_ASSIGN(area_, geographicOf(target, "--grid"));
+      return Success{};
+    }
+    DELTAZ_TRY_ASSIGN(area_, geographicOf(rasters_.front().system, rasters_.front().path));
+    return Success{};
+  }
+
+  void compareVerticalDatums() {
+    const std::string& first = rasters_.front().grid.header.vertical_datum;
+    for (const SourceRaster& raster : rasters_) {
+      const std::string& other = raster.grid.header.vertical_datum;
+      if (other == first || other == "unknown" || first == "unknown") continue;
+      result_.warnings.push_back(
+          fmt::format("{}: its heights refer to '{}', those of {} to '{}'; they are taken as they are, and "
+                      "may differ by metres",
+                      raster.path, other, rasters_.front().path, first));
     }
   }
-  if (!dataset)
-    return refused(path, "this is not an elevation raster that can be read", session.lastFailure());
-  return dataset;
-}
 
-Status addFile(const std::string& path, StreamingHash& hash) {
-  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-  if (file == nullptr) return accessError(path, "cannot read the source");
-  std::vector<std::byte> buffer(1 << 20);
-  for (;;) {
-    const std::size_t count = VSIFReadL(buffer.data(), 1, buffer.size(), file);
-    hash.update(std::span(buffer).first(count));
-    if (count < buffer.size()) break;
-  }
-  VSIFCloseL(file);
-  return Success{};
-}
-
-// Hash of the source's bytes; of a virtual raster those of its members too, in GDAL's order.
-Result<Hash128> hashOfContent(GDALDataset& dataset, const std::string& path) {
-  StreamingHash hash;
-  DELTAZ_TRY(addFile(path, hash));
-  if (EQUAL(dataset.GetDriverName(), "VRT")) {
-    const CPLStringList members(dataset.GetFileList());
-    for (int i = 0; i < members.size(); ++i) {
-      VSIStatBufL status;
-      const bool is_file = VSIStatL(members[i], &status) == 0 && VSI_ISREG(status.st_mode);
-      if (is_file && path != members[i]) DELTAZ_TRY(addFile(members[i], hash));
+  Status cut() {
+    std::vector<SourceRaster> kept;
+    for (SourceRaster& raster : rasters_) {
+      DELTAZ_TRY_ASSIGN(const PostWindow window,
+                        windowWithin(raster.grid.header, raster.system, area_, *options_.bounds,
+                                     options_.allow_ballpark, raster.path));
+      const auto hasPost = [&] {
+        return raster.grid.valid.empty() || std::find(raster.grid.valid.begin(), raster.grid.valid.end(),
+                                                      std::uint8_t{1}) != raster.grid.valid.end();
+      };
+      if (window.columns > 0) cutTo(raster.grid, window);
+      if (window.columns > 0 && hasPost()) {
+        kept.push_back(std::move(raster));
+      } else {
+        result_.warnings.push_back(
+            fmt::format("{}: it has no elevations within --bounds, and is left out", raster.path));
+      }
     }
+    if (kept.empty()) return usageError("--bounds", "no source has elevations there");
+    rasters_ = std::move(kept);
+    return Success{};
   }
-  return hash.digest();
-}
 
-// ---- units
+  // ---- places
 
-struct UnitName {
-  std::string_view name;
-  Rational metres;
+  Status placeOnEarth(SourceRaster& raster) {
+    GridHeader& header = raster.grid.header;
+    const bool same = sameDatum(raster.system, area_);
+    if (header.kind == "geodetic" && same) return Success{};
+    if (header.kind == "geodetic") DELTAZ_TRY(countInDegrees(raster));
+    if (!same) DELTAZ_TRY(checkDatumChange(raster));
+    header.ellipsoid = area_.ellipsoid;
+    header.horizontal_datum = area_.horizontal_datum;
+    DELTAZ_TRY_ASSIGN(
+        const CoordinateChange to_geographic,
+        CoordinateChange::between(raster.system, area_, same || options_.allow_ballpark, raster.path));
+    DELTAZ_TRY_ASSIGN(raster.grid.patches, fitPatches(header, to_geographic, raster.path));
+    header.patches = raster.grid.patches->placement;
+    return Success{};
+  }
+
+  // Latitudes and longitudes of another datum are coordinates like those of a projection.
+  static Status countInDegrees(SourceRaster& raster) {
+    GridHeader& header = raster.grid.header;
+    if (header.x_axis.spacing < kLeastSpacingProjected || header.y_axis.spacing < kLeastSpacingProjected) {
+      return refusedSource(
+          raster.path,
+          fmt::format("the source refers to '{}', unlike the area, and its posts are less than {} "
+                      "degrees apart",
+                      raster.system.name, kLeastSpacingProjected),
+          {}, "Resample it with --grid geodetic");
+    }
+    const auto count = [](GridAxis& axis, const AxisOrigin& origin) {
+      axis = placeAxis(postCoordinate(axis, origin, axis.first), axis.spacing, axis.count, kProjectedOrigin,
+                       kPlacementTolerance);
+    };
+    count(header.x_axis, kLongitudeOrigin);
+    count(header.y_axis, kLatitudeOrigin);
+    header.kind = "projected";
+    return Success{};
+  }
+
+  // Says how the datum is changed; refuses a guess nobody asked for.
+  Status checkDatumChange(const SourceRaster& raster) {
+    const GridHeader& header = raster.grid.header;
+    DELTAZ_TRY_ASSIGN(const ReferenceSystem own, geographicOf(raster.system, raster.path));
+    std::vector<double> x = {
+        postCoordinate(header.x_axis, kProjectedOrigin, header.x_axis.first + header.x_axis.count / 2)};
+    std::vector<double> y = {
+        postCoordinate(header.y_axis, kProjectedOrigin, header.y_axis.first + header.y_axis.count / 2)};
+    DELTAZ_TRY_ASSIGN(const CoordinateChange to_own,
+                      CoordinateChange::between(raster.system, own, true, raster.path));
+    (void)to_own.apply(x, y);
+    const DatumChangeFacts facts = datumChangeFacts(own, area_, x[0], y[0]);
+    const std::string better =
+        facts.missing_grids.empty() ? "" : fmt::format("a better one needs the grid {}", facts.missing_grids);
+    if (!facts.operation.empty()) {
+      result_.warnings.push_back(
+          fmt::format("{}: placed from datum {} to {} by '{}'{}{}", raster.path,
+                      raster.system.horizontal_datum, area_.horizontal_datum, facts.operation,
+                      facts.accuracy ? fmt::format(", accurate to {} m", *facts.accuracy) : "",
+                      better.empty() ? "" : "; " + better));
+      return Success{};
+    }
+    if (options_.allow_ballpark) {
+      result_.warnings.push_back(
+          fmt::format("{}: the change from datum {} to {} is a guess, and may be off by hundreds of metres "
+                      "(--allow-ballpark){}",
+                      raster.path, raster.system.horizontal_datum, area_.horizontal_datum,
+                      better.empty() ? "" : "; " + better));
+      return Success{};
+    }
+    return refusedSource(
+        raster.path,
+        fmt::format("the change from datum {} to {} can only be guessed", raster.system.horizontal_datum,
+                    area_.horizontal_datum),
+        better.empty() ? "PROJ knows no operation between them here" : better,
+        better.empty()
+            ? "Give --allow-ballpark to accept it"
+            : "Put it where PROJ looks (projsync, or the package proj-data), or accept the guess with "
+              "--allow-ballpark");
+  }
+
+  static double spacingInMetres(const SourceRaster& raster) {
+    const GridHeader& header = raster.grid.header;
+    const double spacing = std::sqrt(header.x_axis.spacing * header.y_axis.spacing);
+    return spacing * (raster.system.projected ? raster.system.metres_per_unit : kMetresPerDegree);
+  }
+
+  // ---- what is changed on request
+
+  Status resample() {
+    ResamplingTarget target;
+    target.spacing = options_.spacing;
+    target.bounds = options_.bounds;
+    target.quantum = options_.quantum;
+    target.allow_ballpark = options_.allow_ballpark;
+    std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
+      return spacingInMetres(a) < spacingInMetres(b);
+    });
+    if (options_.grid == "source") {
+      target.system = rasters_.front().system;
+    } else if (options_.grid == "geodetic") {
+      target.system = area_;
+    } else {
+      DELTAZ_TRY_ASSIGN(target.system, parseReferenceSystem(options_.grid, "--grid"));
+    }
+    DELTAZ_TRY_ASSIGN(SourceRaster one, resampleRasters(rasters_, area_, target));
+    rasters_.clear();
+    rasters_.push_back(std::move(one));
+    return placeOnEarth(rasters_.front());
+  }
+
+  Status fill() {
+    for (SourceRaster& raster : rasters_) {
+      DELTAZ_TRY_ASSIGN(const std::uint64_t filled, fillVoidPosts(raster.grid, raster.path));
+      result_.filled_posts += filled;
+    }
+    return Success{};
+  }
+
+  const SourceOptions& options_;
+  SourceArea result_;
+  std::vector<SourceRaster> rasters_;
+  ReferenceSystem area_;  // geographic
 };
-constexpr Rational kMetre{1, 1}, kFoot{381, 1250}, kSurveyFoot{1200, 3937};
-constexpr std::array<UnitName, 16> kUnits = {{{"", kMetre},
-                                              {"m", kMetre},
-                                              {"metre", kMetre},
-                                              {"metres", kMetre},
-                                              {"meter", kMetre},
-                                              {"meters", kMetre},
-                                              {"ft", kFoot},
-                                              {"foot", kFoot},
-                                              {"feet", kFoot},
-                                              {"international foot", kFoot},
-                                              {"ft_int", kFoot},
-                                              {"us-ft", kSurveyFoot},
-                                              {"ftus", kSurveyFoot},
-                                              {"us survey foot", kSurveyFoot},
-                                              {"foot_us", kSurveyFoot},
-                                              {"sft", kSurveyFoot}}};
-
-// The unit of elevations that do not name their own: that of the vertical reference system, if there is one.
-std::string unitOfVerticalSystem(const OGRSpatialReference& reference) {
-  if (!reference.IsCompound()) return {};
-  const char* name = nullptr;
-  (void)reference.GetTargetLinearUnits("VERT_CS", &name);
-  return name == nullptr ? "" : name;
-}
-
-Result<Rational> quantumOf(const std::string& path, const std::string& unit) {
-  std::string lower = unit;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const UnitName& entry : kUnits) {
-    if (entry.name == lower) return entry.metres;
-  }
-  return refused(path, fmt::format("the elevation unit '{}' is unknown", unit),
-                 "known are metres, feet and US survey feet");
-}
-
-// ---- reference system
-
-Status describeReferenceSystem(const OGRSpatialReference& stated, const std::string& path,
-                               GridHeader& header) {
-  OGRSpatialReference horizontal(stated);
-  if (stated.IsCompound()) horizontal.StripVertical();
-  if (horizontal.IsProjected()) {
-    return refused(path, fmt::format("the source is projected ({})", horizontal.GetName()),
-                   "this version reads geodetic sources only", "Warp it to geographic coordinates first");
-  }
-  if (!horizontal.IsGeographic()) return refused(path, "the source's reference system is not geographic");
-  if (std::abs(horizontal.GetAngularUnits() - std::atan(1.0) / 45.0) > 1e-12) {
-    return refused(path, "the source's coordinates are not in degrees");
-  }
-  if (std::abs(horizontal.GetPrimeMeridian()) > 0)
-    return refused(path, "the source's prime meridian is not Greenwich");
-  OGRErr failed = OGRERR_NONE;
-  header.ellipsoid.semi_major_axis = horizontal.GetSemiMajor(&failed);
-  if (failed != OGRERR_NONE) return refused(path, "the source's reference system has no ellipsoid");
-  header.ellipsoid.inverse_flattening = horizontal.GetInvFlattening();
-  const char* const datum = horizontal.GetAttrValue("DATUM");
-  header.horizontal_datum = datum == nullptr ? "unknown" : datum;
-  const char* const vertical = stated.IsCompound() ? stated.GetAttrValue("VERT_CS") : nullptr;
-  header.vertical_datum = vertical == nullptr ? "unknown" : vertical;
-  char* wkt = nullptr;
-  const std::array<const char*, 2> options = {"FORMAT=WKT2_2018", nullptr};
-  stated.exportToWkt(&wkt, options.data());
-  header.crs_wkt = wkt == nullptr ? "" : wkt;
-  CPLFree(wkt);
-  // WKT has no room for the epoch of coordinates in a dynamic datum.
-  if (stated.GetCoordinateEpoch() > 0) header.coordinate_epoch = stated.GetCoordinateEpoch();
-  return Success{};
-}
-
-// ---- what is read and what is not
-
-Status checkBand(GDALDataset& dataset, const std::string& path) {
-  if (dataset.GetRasterCount() != 1) {
-    return refused(path, fmt::format("the source has {} bands", dataset.GetRasterCount()),
-                   "this version reads one band", "Extract the elevations into a file of their own");
-  }
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
-  const GDALDataType type = band.GetRasterDataType();
-  if (type != GDT_Byte && type != GDT_Int16 && type != GDT_UInt16 && type != GDT_Int32) {
-    return refused(path, fmt::format("elevations of type {} are not read", GDALGetDataTypeName(type)),
-                   "this version reads integers of up to 32 bits");
-  }
-  if (band.GetScale(nullptr) != 1.0 || band.GetOffset(nullptr) != 0.0) {
-    return refused(path, "the source scales its elevations", "this version reads plain integers");
-  }
-  if (band.GetColorTable() != nullptr) {
-    return refused(path, "the source has a colour table",
-                   "its values are classes or colours, not elevations");
-  }
-  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0) {
-    return refused(path, "the source marks its voids with a mask of its own",
-                   "this version reads a nodata value", "Convert it with a nodata value first");
-  }
-  return Success{};
-}
-
-Status placeGrid(const SourceDescription& source, const std::string& path, GridHeader& header) {
-  const std::array<double, 6>& transform = source.geotransform;
-  if (transform[2] != 0 || transform[4] != 0)
-    return refused(path, "the source is rotated against its coordinate axes");
-  if (!(transform[1] > 0) || transform[5] == 0 || !std::isfinite(transform[0]) ||
-      !std::isfinite(transform[3])) {
-    return refused(path, "the source's columns do not run from west to east");
-  }
-  if (source.columns < 2 || source.rows < 2) return refused(path, "the source has fewer than 2 x 2 posts");
-  const double spacing_y = std::abs(transform[5]);
-  if (transform[1] < kLeastSpacingDegrees || spacing_y < kLeastSpacingDegrees) {
-    return refused(path, "the source's posts are less than 0.1 mm apart",
-                   "its georeferencing is hardly meant so");
-  }
-  double west = transform[0] + 0.5 * transform[1];
-  const double first_row = transform[3] + 0.5 * transform[5];
-  const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
-  const double south = std::min(first_row, last_row);
-  const double north = std::max(first_row, last_row);
-  if (south < -90 - kDegreesTolerance || north > 90 + kDegreesTolerance) {
-    return refused(path, fmt::format("the source reaches from latitude {} to {}", south, north),
-                   "there is no such latitude");
-  }
-  const double width = static_cast<double>(source.columns - 1) * transform[1];
-  if (width > 360 + kDegreesTolerance || std::abs(west) > 720)
-    return refused(path, "the source goes more than once round the Earth");
-  // The west edge in [-180, 180), also when rounding left it a hair below.
-  while (west < -180 - kDegreesTolerance) west += 360;
-  while (west >= 180 - kDegreesTolerance) west -= 360;
-  header.x_axis = placeAxis(west, transform[1], source.columns, kLongitudeOrigin);
-  header.y_axis = placeAxis(south, spacing_y, source.rows, kLatitudeOrigin);
-  return Success{};
-}
-
-// Reads all rows, south first, and marks the voids.
-Status readPosts(GDALDataset& dataset, const std::string& path, const GdalSession& session, RawGrid& grid) {
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
-  const SourceDescription& source = grid.header.sources.front();
-  const auto columns = static_cast<std::size_t>(source.columns);
-  const int rows = static_cast<int>(source.rows);
-  const bool south_up = source.geotransform[5] > 0;
-  grid.heights.resize(columns * static_cast<std::size_t>(rows));
-  std::vector<std::int32_t> buffer(columns * kRowsPerRead);
-  for (int first = 0; first < rows; first += kRowsPerRead) {
-    const int count = std::min(kRowsPerRead, rows - first);
-    if (band.RasterIO(GF_Read, 0, first, static_cast<int>(columns), count, buffer.data(),
-                      static_cast<int>(columns), count, GDT_Int32, 0, 0, nullptr) != CE_None) {
-      return refused(path, "the source cannot be read to its end", session.lastFailure(),
-                     "It is damaged or cut short");
-    }
-    for (int row = 0; row < count; ++row) {
-      const int target = south_up ? first + row : rows - 1 - (first + row);
-      std::copy_n(buffer.begin() + static_cast<std::ptrdiff_t>(columns) * row, columns,
-                  grid.heights.begin() + static_cast<std::ptrdiff_t>(columns) * target);
-    }
-  }
-  std::size_t voids = 0;
-  if (source.nodata && *source.nodata == std::floor(*source.nodata)) {
-    const double sentinel = *source.nodata;
-    for (std::size_t k = 0; k < grid.heights.size(); ++k) {
-      if (static_cast<double>(grid.heights[k]) != sentinel) continue;
-      if (voids++ == 0) grid.valid.assign(grid.heights.size(), 1);
-      grid.valid[k] = 0;
-      grid.heights[k] = 0;
-    }
-  }
-  if (voids == grid.heights.size())
-    return refused(path, "the source has no elevations", "every post is void");
-  for (std::size_t k = 0; k < grid.heights.size(); ++k) {
-    if (std::abs(static_cast<std::int64_t>(grid.heights[k])) > kMaximumHeightQuanta) {
-      return refused(path, fmt::format("the elevation {} is out of range", grid.heights[k]));
-    }
-  }
-  return Success{};
-}
-
-Result<RawGrid> readOpened(GDALDataset& dataset, const std::string& path, const SourceOptions& options,
-                           const GdalSession& session) {
-  RawGrid grid;
-  DELTAZ_TRY(checkBand(dataset, path));
-  SourceDescription source;
-  source.name = baseName(path);
-  source.driver = dataset.GetDriver() == nullptr ? "" : dataset.GetDriver()->GetDescription();
-  source.columns = dataset.GetRasterXSize();
-  source.rows = dataset.GetRasterYSize();
-  if (dataset.GetGeoTransform(source.geotransform.data()) != CE_None) {
-    return refused(path, "the source is not georeferenced", "it does not say where its posts are");
-  }
-  const char* const registration = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
-  source.point_registered = registration != nullptr && EQUAL(registration, GDALMD_AOP_POINT);
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
-  source.data_type = GDALGetDataTypeName(band.GetRasterDataType());
-  source.unit = band.GetUnitType();
-  int has_nodata = 0;
-  const double nodata = band.GetNoDataValue(&has_nodata);
-  if (has_nodata != 0 && std::isfinite(nodata)) source.nodata = nodata;
-  DELTAZ_TRY_ASSIGN(source.content, hashOfContent(dataset, path));
-
-  OGRSpatialReference reference;
-  if (const OGRSpatialReference* stated = dataset.GetSpatialRef(); stated != nullptr) {
-    reference = *stated;
-  } else if (options.crs.empty()) {
-    return usageError(path, "the source does not say what its coordinates refer to",
-                      "it has no coordinate reference system",
-                      "Give one with --crs, for example --crs EPSG:4326");
-  } else if (reference.SetFromUserInput(options.crs.c_str()) != OGRERR_NONE) {
-    return usageError("--crs", fmt::format("'{}' is not a coordinate reference system", options.crs),
-                      session.lastFailure());
-  }
-  DELTAZ_TRY(describeReferenceSystem(reference, path, grid.header));
-  if (const char* dted = dataset.GetMetadataItem("DTED_VerticalDatum");
-      dted != nullptr && grid.header.vertical_datum == "unknown") {
-    grid.header.vertical_datum = dted;
-  }
-  grid.header.unit = "metre";
-  DELTAZ_TRY_ASSIGN(grid.header.quantum,
-                    quantumOf(path, source.unit.empty() ? unitOfVerticalSystem(reference) : source.unit));
-  DELTAZ_TRY(placeGrid(source, path, grid.header));
-  grid.header.sources.push_back(source);
-  DELTAZ_TRY(readPosts(dataset, path, session, grid));
-  return grid;
-}
 
 }  // namespace
 
-Result<RawGrid> readElevationSource(const std::string& path, const SourceOptions& options) {
+Result<SourceArea> readElevationSources(std::span<const std::string> paths, const SourceOptions& options) {
+  const std::string where = paths.empty() ? "" : paths.front();
   try {
     const GdalSession session;
-    DELTAZ_TRY_ASSIGN(const GDALDatasetUniquePtr dataset, openRaster(path, session));
-    return readOpened(*dataset, path, options, session);
+    return AreaReader(options).run(paths);
   } catch (const std::bad_alloc&) {
-    return accessError(path, "cannot read the source", "there is not enough memory for all its posts");
+    return accessError(where, "cannot read the source", "there is not enough memory for all its posts");
   } catch (const std::exception& exception) {
-    return internalError(path, exception.what());
+    return internalError(where, exception.what());
   }
+}
+
+Result<RawGrid> readElevationSource(const std::string& path, const SourceOptions& options) {
+  DELTAZ_TRY_ASSIGN(SourceArea area, readElevationSources(std::span(&path, 1), options));
+  if (area.grids.size() != 1) {
+    return refusedSource(path, fmt::format("the source makes {} grids", area.grids.size()), "one was wanted");
+  }
+  return std::move(area.grids.front());
 }
 
 }  // namespace deltaz

@@ -1,17 +1,22 @@
-// Reads a source DEM through GDAL and places its posts on a grid, without resampling: posts are where the
-// source says they are (the centre of a GDAL pixel, whether the file calls itself pixel-is-area or
-// pixel-is-point).
+// Reads source DEMs through GDAL and places their posts on grids, without resampling unless asked to: posts
+// are where the source says they are (the centre of a GDAL pixel, whether the file calls itself pixel-is-area
+// or pixel-is-point), and every stored value comes back from its height exactly wherever a quantum of at
+// least 1 mm allows it.
 //
-// This version reads one integer raster in geodetic coordinates, north-up or south-up. What it does not read
-// it refuses, saying why: rotated, projected, floating point, per-dataset masks, several bands. Errors:
-// kCannotAccess (missing, unreadable), kInvalid (not a raster, truncated, all void, ...), kUsage (no CRS).
-// GDAL's exceptions and messages end here. Thread-safety: one thread per call.
+// Sources with the same reference system, spacing and phase that touch or overlap become one grid: where they
+// overlap the earlier named one wins, and a void never wins over a height. All others are grids of their own.
+// What is not read is refused, saying why: rotated rasters, colour tables, several bands without a choice of
+// one, ... Errors: kCannotAccess (missing, unreadable, out of memory), kInvalid (not a raster, truncated, all
+// void, ...), kUsage (no CRS, wrong option). GDAL's exceptions and messages end here. Cost: all posts in
+// memory. Thread-safety: one thread per call.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/area.h"
@@ -21,8 +26,35 @@
 
 namespace deltaz {
 
+// Degrees; west > east crosses the antimeridian.
+struct SourceBounds {
+  double west = 0, south = 0, east = 0, north = 0;
+};
+
+enum class VoidPolicy : std::uint8_t { kKeep, kFill };
+
+// A spacing of posts as people name it.
+struct PostSpacing {
+  double value = 0;          // > 0
+  bool arc_seconds = false;  // else units of the projection (metres for "30m")
+};
+
 struct SourceOptions {
-  std::string crs;  // used where the source has none; empty: refuse such a source
+  // Reference system of the sources, in any form GDAL takes. Empty: what the sources say, and one that says
+  // nothing is refused. Where a source says something else this wins, with a warning.
+  std::string crs = {};
+  int band = 0;                          // 0: the one band of elevations there is
+  std::optional<double> nodata = {};     // stored value that means void; wins over what the source declares
+  std::optional<Rational> quantum = {};  // metres; none: found so that nothing is lost
+  std::optional<SourceBounds> bounds = {};  // keep only posts inside, outwards to the next post
+  // "source": the sources' own posts. "geodetic" or a reference system: resampled to that.
+  std::string grid = "source";
+  std::optional<PostSpacing> spacing = {};  // resampled to that; none: the source's own, or one like it
+  // A reference system whose datum all grids are to refer to. Empty: that of `grid` if it names one, else the
+  // first source's.
+  std::string datum = {};
+  VoidPolicy voids = VoidPolicy::kKeep;
+  bool allow_ballpark = false;  // accept a change of datum that can only be guessed, with a warning
 };
 
 // A whole grid of posts in memory: the report's raw gaming area.
@@ -41,6 +73,17 @@ struct RawGrid {
   }
 };
 
+// The grids of one gaming area, the one drawn on top first: finer before coarser, then as named. All refer to
+// one datum and ellipsoid.
+struct SourceArea {
+  std::vector<RawGrid> grids;
+  std::vector<std::string> warnings;  // one line each
+  std::uint64_t filled_posts = 0;     // voids that were given a height
+};
+
+Result<SourceArea> readElevationSources(std::span<const std::string> paths, const SourceOptions& options);
+
+// One source that makes one grid; kInvalid if it makes several.
 Result<RawGrid> readElevationSource(const std::string& path, const SourceOptions& options);
 
 }  // namespace deltaz

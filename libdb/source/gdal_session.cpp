@@ -12,16 +12,22 @@ namespace {
 
 constexpr const char* kVerifyDted = "DTED_VERIFY_CHECKSUM";
 
-void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* message) {
-  if (severity >= CE_Failure) *static_cast<std::string*>(CPLGetErrorHandlerUserData()) = message;
-}
-
 }  // namespace
+
+// What GDAL calls.
+struct GdalMessages {
+  static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* message) {
+    if (severity < CE_Failure) return;
+    auto& log = *static_cast<GdalSession::Log*>(CPLGetErrorHandlerUserData());
+    log.last = message;
+    ++log.failures;
+  }
+};
 
 GdalSession::GdalSession() {
   static std::once_flag registered;
   std::call_once(registered, GDALAllRegister);
-  CPLPushErrorHandlerEx(collect, &failure_);
+  CPLPushErrorHandlerEx(GdalMessages::collect, &log_);
   CPLSetThreadLocalConfigOption(kVerifyDted, "YES");
 }
 
@@ -31,7 +37,7 @@ GdalSession::~GdalSession() {
 }
 
 std::string GdalSession::lastFailure() const {
-  std::string text = failure_;
+  std::string text = log_.last;
   // An error is one line.
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');

@@ -15,10 +15,17 @@ class GdalSession {
 
   // The last failure GDAL reported in this session, empty if it gave no reason.
   std::string lastFailure() const;
-  bool hasFailed() const { return !failure_.empty(); }
+  bool hasFailed() const { return failures() > 0; }
+  // How many failures GDAL reported so far: some drivers report one and go on.
+  int failures() const { return log_.failures; }
 
  private:
-  std::string failure_;
+  struct Log {
+    std::string last;
+    int failures = 0;
+  };
+  friend struct GdalMessages;
+  Log log_;
 };
 
 }  // namespace deltaz

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "libdb/access/grid_geometry.h"
+#include "libdb/source/simple_fraction.h"
 
 namespace deltaz {
 
@@ -13,31 +13,6 @@ namespace {
 // Sources name their spacing in seconds, or in a simple fraction of one (1/3", 1/9", 3/10"); larger
 // denominators would fit anything.
 constexpr std::int64_t kLargestDenominator = 1000;
-
-// The simplest fraction within `tolerance` of `value` > 0 (continued fraction); nothing if its denominator
-// would be too large.
-std::optional<Rational> simplestFraction(double value, double tolerance) {
-  std::int64_t previous_numerator = 1, numerator = static_cast<std::int64_t>(std::floor(value));
-  std::int64_t previous_denominator = 0, denominator = 1;
-  double rest = value - std::floor(value);
-  while (std::abs(value - static_cast<double>(numerator) / static_cast<double>(denominator)) > tolerance ||
-         numerator == 0) {
-    if (rest < 1e-12) return std::nullopt;
-    const double inverse = 1.0 / rest;
-    const double whole = std::floor(inverse);
-    if (whole > static_cast<double>(kLargestDenominator)) return std::nullopt;
-    const auto term = static_cast<std::int64_t>(whole);
-    rest = inverse - whole;
-    const std::int64_t next_numerator = term * numerator + previous_numerator;
-    const std::int64_t next_denominator = term * denominator + previous_denominator;
-    if (next_denominator > kLargestDenominator) return std::nullopt;
-    previous_numerator = numerator;
-    previous_denominator = denominator;
-    numerator = next_numerator;
-    denominator = next_denominator;
-  }
-  return Rational{numerator, denominator};
-}
 
 double largestDeviation(const GridAxis& axis, const AxisOrigin& origin, double first, double spacing) {
   const double at_first = postCoordinate(axis, origin, axis.first) - first;
@@ -49,12 +24,17 @@ double largestDeviation(const GridAxis& axis, const AxisOrigin& origin, double f
 }  // namespace
 
 GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin) {
-  const double tolerance = placementTolerance(origin);
+  return placeAxis(first, spacing, count, origin, placementTolerance(origin));
+}
+
+GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin,
+                   double tolerance) {
   GridAxis axis;
   axis.count = count;
   // Whole multiples of an exact spacing, if the source lies on them.
   if (const std::optional<Rational> exact = simplestFraction(
-          spacing * origin.exact_per_unit, tolerance * origin.exact_per_unit / static_cast<double>(count))) {
+          spacing * origin.exact_per_unit, tolerance * origin.exact_per_unit / static_cast<double>(count),
+          kLargestDenominator)) {
     axis.exact_spacing = *exact;
     axis.spacing = exact->value() / origin.exact_per_unit;
     axis.phase = 0;
@@ -71,6 +51,19 @@ GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisO
   axis.first = static_cast<std::int64_t>(std::floor(position));
   axis.phase = std::min(position - std::floor(position), std::nextafter(1.0, 0.0));
   return axis;
+}
+
+std::optional<std::int64_t> indexOnAxis(const GridAxis& axis, const GridAxis& other, const AxisOrigin& origin,
+                                        double tolerance) {
+  const double first = postCoordinate(other, origin, other.first);
+  const double last = postCoordinate(other, origin, other.first + other.count - 1);
+  const double position = (first - postCoordinate(axis, origin, 0)) / axis.spacing;
+  if (!(std::abs(position) < 1e15)) return std::nullopt;
+  const std::int64_t index = std::llround(position);
+  if (std::abs(postCoordinate(axis, origin, index) - first) > tolerance ||
+      std::abs(postCoordinate(axis, origin, index + other.count - 1) - last) > tolerance)
+    return std::nullopt;
+  return index;
 }
 
 }  // namespace deltaz

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "formats/area.h"
 
@@ -22,5 +23,13 @@ inline double placementTolerance(const AxisOrigin& origin) {
 // Axis of `count` >= 2 posts from coordinate `first` on, `spacing` > 0 apart. Guarantee: postCoordinate() of
 // post k differs from first + k * spacing by at most placementTolerance(origin).
 GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin);
+// The same with another tolerance, for coordinates whose unit is not the origin's usual one.
+GridAxis placeAxis(double first, double spacing, std::int64_t count, const AxisOrigin& origin,
+                   double tolerance);
+
+// The index on `axis` of the first post of `other`, if all posts of `other` are posts of `axis` (continued as
+// far as needed) within `tolerance`.
+std::optional<std::int64_t> indexOnAxis(const GridAxis& axis, const GridAxis& other, const AxisOrigin& origin,
+                                        double tolerance);
 
 }  // namespace deltaz

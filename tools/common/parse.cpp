@@ -1,8 +1,12 @@
 #include "tools/common/parse.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -125,6 +129,72 @@ Result<GeodeticBounds> parseBounds(std::string_view text, const std::string& opt
     return usageError(option, fmt::format("'{}' holds no area", text));
   }
   return bounds;
+}
+
+Result<double> parseStoredValue(std::string_view text, const std::string& option) {
+  if (text == "nan" || text == "NaN" || text == "NAN") return std::numeric_limits<double>::quiet_NaN();
+  return parseNumber(text, option);
+}
+
+namespace {
+
+constexpr std::int64_t kMostParts = 1000000000000;
+
+bool allDigits(std::string_view text) {
+  return !text.empty() && text.size() <= 12 &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::int64_t wholeNumber(std::string_view digits) {
+  std::int64_t value = 0;
+  for (const char c : digits) value = 10 * value + (c - '0');
+  return value;
+}
+
+// "12", "0.05", "381/1250" in lowest terms; nothing if it is none of them, or zero.
+std::optional<Rational> exactFraction(std::string_view text) {
+  Rational value;
+  if (const std::size_t slash = text.find('/'); slash != std::string_view::npos) {
+    if (!allDigits(text.substr(0, slash)) || !allDigits(text.substr(slash + 1))) return std::nullopt;
+    value = {wholeNumber(text.substr(0, slash)), wholeNumber(text.substr(slash + 1))};
+  } else {
+    const std::size_t point = std::min(text.find('.'), text.size());
+    const std::string_view whole = text.substr(0, point);
+    const std::string_view decimals = point < text.size() ? text.substr(point + 1) : std::string_view{};
+    const std::string digits = std::string(whole) + std::string(decimals);
+    if (!allDigits(digits)) return std::nullopt;
+    value = {wholeNumber(digits), 1};
+    for (std::size_t k = 0; k < decimals.size(); ++k) value.denominator *= 10;
+  }
+  if (value.numerator == 0 || value.denominator == 0 || value.denominator > kMostParts) return std::nullopt;
+  const std::int64_t common = std::gcd(value.numerator, value.denominator);
+  return Rational{value.numerator / common, value.denominator / common};
+}
+
+}  // namespace
+
+Result<Rational> parseQuantum(std::string_view text, const std::string& option) {
+  const std::optional<Rational> value = exactFraction(text);
+  if (!value) return wrongForm(text, option, "metres, as 0.01 or 381/1250, or auto");
+  if (value->value() < 1e-6 || value->value() > 1000)
+    return usageError(option, fmt::format("{} is not between 0.000001 and 1000", text));
+  return *value;
+}
+
+Result<PostSpacing> parseSpacing(std::string_view text, const std::string& option) {
+  PostSpacing spacing;
+  spacing.arc_seconds = text.ends_with("as");
+  if (!spacing.arc_seconds && !text.ends_with("m"))
+    return wrongForm(text, option, "arc-seconds (1as) or metres (30m)");
+  const std::string_view number = text.substr(0, text.size() - (spacing.arc_seconds ? 2 : 1));
+  const std::optional<Rational> value = exactFraction(number);
+  if (!value) return wrongForm(text, option, "arc-seconds (1as, 1/3as) or metres (30m, 0.5m)");
+  spacing.value = value->value();
+  // From the closest posts of the format to a quarter of the Earth.
+  const bool possible = spacing.arc_seconds ? spacing.value >= 1e-5 && spacing.value <= 324000
+                                            : spacing.value >= 1e-3 && spacing.value <= 1e7;
+  if (!possible) return usageError(option, fmt::format("{} is no spacing of posts", text));
+  return spacing;
 }
 
 }  // namespace deltaz

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "formats/area.h"
 #include "formats/error.h"
+#include "libdb/source/elevation_source.h"
 
 namespace deltaz {
 
@@ -50,5 +52,14 @@ struct GeodeticBounds {
   double west = 0, south = 0, east = 0, north = 0;
 };
 Result<GeodeticBounds> parseBounds(std::string_view text, const std::string& option);
+
+// A stored value that means void: a number, or "nan".
+Result<double> parseStoredValue(std::string_view text, const std::string& option);
+
+// A height step in metres, exactly: a decimal ("0.01") or a fraction ("381/1250"), 1e-6 .. 1000.
+Result<Rational> parseQuantum(std::string_view text, const std::string& option);
+
+// "1as" (arc-seconds; also fractions, "1/3as") or "30m".
+Result<PostSpacing> parseSpacing(std::string_view text, const std::string& option);
 
 }  // namespace deltaz

@@ -1,4 +1,5 @@
 // dbbuild info: what is in a database.
+#include <cmath>
 #include <fmt/format.h>
 #include <iostream>
 
@@ -16,14 +17,20 @@ std::string rationalText(const Rational& value) {
                                 : fmt::format("{}/{}", value.numerator, value.denominator);
 }
 
-Json axisJson(const GridAxis& axis) {
+Json axisJson(const GridAxis& axis, bool geodetic) {
   Json json;
   json["spacing"] = axis.spacing;
-  json["spacing_arc_seconds"] = axis.exact_spacing ? Json(rationalText(*axis.exact_spacing)) : Json(nullptr);
+  const Json exact = axis.exact_spacing ? Json(rationalText(*axis.exact_spacing)) : Json(nullptr);
+  json[geodetic ? "spacing_arc_seconds" : "spacing_exact"] = exact;
   json["phase"] = axis.phase;
   json["first"] = axis.first;
   json["count"] = axis.count;
   return json;
+}
+
+// A stored value that means void; JSON has no NaN.
+Json storedJson(double value) {
+  return std::isnan(value) ? Json("nan") : Json(value);
 }
 
 Json sourceJson(const SourceDescription& source) {
@@ -34,8 +41,11 @@ Json sourceJson(const SourceDescription& source) {
   json["columns"] = source.columns;
   json["rows"] = source.rows;
   json["data_type"] = source.data_type;
-  json["nodata"] = source.nodata ? finiteOrNull(*source.nodata) : Json(nullptr);
+  json["nodata"] = source.nodata ? storedJson(*source.nodata) : Json(nullptr);
   json["unit"] = source.unit;
+  json["band"] = source.band;
+  json["scale"] = source.scale;
+  json["offset"] = source.offset;
   json["point_registered"] = source.point_registered;
   return json;
 }
@@ -51,8 +61,25 @@ Json gridJson(const GridHeader& grid) {
   json["crs_wkt"] = grid.crs_wkt;
   json["unit"] = grid.unit;
   json["quantum"] = rationalText(grid.quantum);
-  json["longitude"] = axisJson(grid.x_axis);
-  json["latitude"] = axisJson(grid.y_axis);
+  json["height_error"] = grid.height_error;
+  const bool geodetic = grid.kind == "geodetic";
+  json[geodetic ? "longitude" : "x"] = axisJson(grid.x_axis, geodetic);
+  json[geodetic ? "latitude" : "y"] = axisJson(grid.y_axis, geodetic);
+  json["patches"] = nullptr;
+  if (grid.patches) {
+    json["patches"] = {{"cells", grid.patches->cells},
+                       {"columns", grid.patches->columns},
+                       {"rows", grid.patches->rows},
+                       {"error", grid.patches->error}};
+  }
+  json["resampling"] = nullptr;
+  if (grid.resampling) {
+    json["resampling"] = {{"method", grid.resampling->method},
+                          {"largest_error", grid.resampling->largest_error},
+                          {"rms_error", grid.resampling->rms_error}};
+  }
+  json["sentinels"] = Json::array();
+  for (const double sentinel : grid.sentinels) json["sentinels"].push_back(storedJson(sentinel));
   json["leaf_cells"] = grid.leaf_cells;
   json["level_count"] = grid.level_count;
   json["normal_exponent"] = grid.normal_exponent;
@@ -86,9 +113,32 @@ Json areaJson(const std::string& path, const AreaHeader& area) {
   return json;
 }
 
-std::string axisText(const GridAxis& axis) {
+std::string axisText(const GridAxis& axis, bool geodetic) {
+  if (!geodetic) return fmt::format("{} units", axis.spacing);
   return axis.exact_spacing ? rationalText(*axis.exact_spacing) + " arc-seconds"
                             : fmt::format("{} degrees", axis.spacing);
+}
+
+// The lines only some grids need.
+std::string specialsText(const GridHeader& grid) {
+  std::string text;
+  if (grid.height_error > 0)
+    text += fmt::format("    rounding      heights within {} m of the source\n", grid.height_error);
+  if (grid.patches) {
+    text += fmt::format("    placed by     {} x {} patches of {} cells, within {:.1e} m of PROJ\n",
+                        grid.patches->columns, grid.patches->rows, grid.patches->cells, grid.patches->error);
+  }
+  if (grid.resampling) {
+    text += fmt::format("    resampled     {}; the sources' posts within {:.3f} m, {:.3f} m rms\n",
+                        grid.resampling->method, grid.resampling->largest_error, grid.resampling->rms_error);
+  }
+  if (!grid.sentinels.empty()) {
+    text += "    voids held    ";
+    for (std::size_t k = 0; k < grid.sentinels.size(); ++k)
+      text += fmt::format("{}{}", k == 0 ? "" : ", ", grid.sentinels[k]);
+    text += "\n";
+  }
+  return text;
 }
 
 std::string areaText(const std::string& path, const AreaHeader& area, bool verbose) {
@@ -100,14 +150,18 @@ std::string areaText(const std::string& path, const AreaHeader& area, bool verbo
   for (std::size_t i = 0; i < area.grids.size(); ++i) {
     const GridHeader& grid = area.grids[i];
     text += fmt::format("  grid {}          {}, {} x {} posts, {} x {}\n", i, grid.kind, grid.x_axis.count,
-                        grid.y_axis.count, axisText(grid.x_axis), axisText(grid.y_axis));
+                        grid.y_axis.count, axisText(grid.x_axis, grid.kind == "geodetic"),
+                        axisText(grid.y_axis, grid.kind == "geodetic"));
     text += fmt::format("    datum         {}; heights: {}\n", grid.horizontal_datum, grid.vertical_datum);
     text += fmt::format("    quantum       {} m, leaves of {} cells, {} levels\n", rationalText(grid.quantum),
                         grid.leaf_cells, grid.level_count);
+    text += specialsText(grid);
     for (const SourceDescription& source : grid.sources) {
       text += fmt::format("    source        {} ({}, {})\n", source.name, source.driver, source.data_type);
     }
   }
+  for (const auto& [name, value] : area.options)
+    text += fmt::format("  option          {}: {}\n", name, value);
   for (const FileReference& file : area.files) {
     text += fmt::format("  file            {} ({} bytes)\n", file.name, file.length);
     if (verbose) text += fmt::format("    id            {}\n", toHex(file.id));

@@ -7,6 +7,7 @@
 #include "tools/common/command_line.h"
 #include "tools/common/output_file.h"
 #include "tools/common/progress.h"
+#include "tools/dbcheck/against_sources.h"
 #include "tools/dbcheck/code_listing.h"
 #include "tools/dbcheck/json_report.h"
 #include "tools/dbcheck/text_report.h"
@@ -35,10 +36,11 @@ void addOptions(CLI::App& app, Options& options) {
                  "How deep to look, each level with those before it: structure, checksum, decode; all is "
                  "every level this version has (default: decode)")
       ->type_name("LEVEL");
-  app.add_option("--against", options.against, "The DEM the database was built from: compare post for post")
-      ->type_name("DEM")
-      ->expected(1);
-  app.add_option("--crs", options.crs, "CRS of that DEM where it names none")->type_name("CRS");
+  app.add_option("--against", options.against,
+                 "The DEMs the database was built from: compare post for post, read as the database says it "
+                 "read them")
+      ->type_name("DEM...");
+  app.add_option("--crs", options.crs, "CRS of those DEMs where they name none")->type_name("CRS");
   app.add_option("--report", options.reports,
                  "Also write the report to a file; the form of this version is json")
       ->type_name("json=FILE")
@@ -73,7 +75,11 @@ Result<std::vector<std::string>> reportPaths(const Options& options) {
 }
 
 Result<CheckRequest> makeRequest(const Options& options) {
-  if (options.area.empty()) return usageError("AREA.dz", "no database is given", {}, "See 'dbcheck --help'");
+  if (options.area.empty()) {
+    return usageError("AREA.dz", "no database is given",
+                      options.against.empty() ? "" : "what follows --against are DEMs",
+                      options.against.empty() ? "See 'dbcheck --help'" : "Name the database first");
+  }
   CheckRequest request;
   request.area = options.area;
   const std::optional<CheckLevel> level = levelFromName(options.level);
@@ -83,11 +89,8 @@ Result<CheckRequest> makeRequest(const Options& options) {
   }
   request.level = *level;
   request.fail_on = options.fail_on == "warning" ? Severity::kWarning : Severity::kError;
-  if (options.against.size() > 1) {
-    return usageError("--against", fmt::format("this version compares with one DEM, and {} were given",
-                                               options.against.size()));
-  }
-  if (!options.against.empty()) request.against = options.against.front();
+  for (const std::string& path : options.against)
+    request.against = request.against ? *request.against + ", " + path : path;
   if (!options.crs.empty() && !request.against)
     return usageError("--crs", "it means nothing without --against");
   return request;
@@ -119,10 +122,11 @@ Result<int> check(const Options& options) {
   {
     ProgressReporter progress(progressMode(options.common), "dbcheck", std::cerr);
     progress.report("reading", 0);
-    std::optional<RawGrid> source;
+    SourceArea sources;
     if (request.against) {
-      DELTAZ_TRY_ASSIGN(source, readElevationSource(*request.against, SourceOptions{options.crs}));
-      check_options.against = &*source;
+      DELTAZ_TRY_ASSIGN(sources, readAgainst(options.against, options.crs, request.area));
+      check_options.against = sources.grids.data();
+      check_options.against_count = sources.grids.size();
       check_options.against_name = *request.against;
     }
     progress.report("checking", 0.1);

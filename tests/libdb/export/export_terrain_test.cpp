@@ -52,6 +52,54 @@ TEST(ExportTerrain, the_coordinate_epoch_is_kept) {
   EXPECT_EQ(back.value().header.coordinate_epoch, 2021.3);
 }
 
+TEST(ExportTerrain, each_void_holds_what_its_source_held) {
+  SyntheticGridOptions options;
+  options.voids = VoidPattern::kScattered;
+  RawGrid grid = syntheticGrid(options);
+  grid.header.sentinels = {-32768, -9999, -32767};
+  grid.header.sources.front().nodata = -32768;
+  grid.void_kinds.assign(grid.heights.size(), 0);
+  std::size_t seen = 0;
+  for (std::size_t k = 0; k < grid.valid.size(); ++k) {
+    if (grid.valid[k] == 0) grid.void_kinds[k] = static_cast<std::uint8_t>(seen++ % 3);
+  }
+  ASSERT_GT(seen, 9u);
+  const MemoryFileSystem files = buildInMemory(grid, {.leaf_cells = 16});
+  const TemporaryDirectory folder;
+  const Status exported = exportTerrain(openSample(files), folder.file("dem.tif"), {});
+  ASSERT_TRUE(exported.ok()) << exported.error().message();
+  const Result<SourceArea> back = readElevationSources(std::vector<std::string>{folder.file("dem.tif")}, {});
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  const RawGrid& again = back.value().grids.front();
+  ASSERT_EQ(again.valid, grid.valid);
+  EXPECT_EQ(back.value().warnings.size(), 2u) << "one sentinel is declared, two are not";
+  for (std::size_t k = 0; k < grid.valid.size(); ++k) {
+    if (grid.valid[k] != 0) continue;
+    ASSERT_EQ(again.header.sentinels.at(again.void_kinds[k]), grid.header.sentinels[grid.void_kinds[k]]);
+  }
+}
+
+TEST(ExportTerrain, scale_offset_and_unit_are_those_of_the_source) {
+  RawGrid grid = syntheticGrid();
+  SourceDescription& source = grid.header.sources.front();
+  source.data_type = "Int32";
+  source.unit = "ft";
+  source.scale = 0.1;
+  source.offset = 50;
+  grid.header.quantum = {381, 12500};  // a tenth of a foot
+  const MemoryFileSystem files = buildInMemory(grid);
+  const TemporaryDirectory folder;
+  const Status exported = exportTerrain(openSample(files), folder.file("dem.tif"), {});
+  ASSERT_TRUE(exported.ok()) << exported.error().message();
+  const Result<RawGrid> back = readElevationSource(folder.file("dem.tif"), {});
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back.value().header.sources[0].scale, 0.1);
+  EXPECT_EQ(back.value().header.sources[0].offset, 50);
+  EXPECT_EQ(back.value().header.sources[0].unit, "ft");
+  EXPECT_EQ(back.value().header.quantum, grid.header.quantum);
+  EXPECT_EQ(back.value().heights, grid.heights);
+}
+
 TEST(ExportTerrain, a_coarser_level_keeps_its_posts_in_place) {
   const RawGrid grid = syntheticGrid();
   const MemoryFileSystem files = buildInMemory(grid, {.leaf_cells = 16});

@@ -2,54 +2,15 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
-#include "tests/support/temporary_directory.h"
+#include "tests/libdb/source/test_rasters.h"
 
 namespace deltaz {
 namespace {
 
-struct RasterOptions {
-  GDALDataType type = GDT_Int16;
-  int bands = 1;
-  std::array<double, 6> transform = {-80.5 / 3600, 1.0 / 3600, 0, 43.5 / 3600, 0, -1.0 / 3600};
-  std::string crs = "EPSG:4326";
-  bool georeferenced = true;
-  std::function<void(GDALDataset&)> prepare;  // before the posts are written
-  std::function<void(GDALDataset&)> change;   // after
-};
-
-// A GeoTIFF of 5 x 4 posts, height 10 * row from the north + column.
-std::string makeRaster(const TemporaryDirectory& folder, const RasterOptions& options = {}) {
-  GDALAllRegister();
-  const std::string path = folder.file("dem.tif");
-  GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), 5, 4, options.bands, options.type, nullptr));
-  if (options.georeferenced) {
-    std::array<double, 6> transform = options.transform;
-    dataset->SetGeoTransform(transform.data());
-  }
-  if (!options.crs.empty()) {
-    OGRSpatialReference reference;
-    reference.SetFromUserInput(options.crs.c_str());
-    dataset->SetSpatialRef(&reference);
-  }
-  if (options.prepare) options.prepare(*dataset);
-  std::vector<std::int32_t> heights;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 5; ++column) heights.push_back(10 * row + column);
-  }
-  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 5, 4, heights.data(), 5, 4, GDT_Int32, 0, 0,
-                                                nullptr),
-            CE_None);
-  if (options.change) options.change(*dataset);
-  return path;
-}
-
-Error refusal(const RasterOptions& options) {
+Error refusal(const TestRaster& options) {
   const TemporaryDirectory folder;
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   if (grid.ok()) {
@@ -62,7 +23,7 @@ Error refusal(const RasterOptions& options) {
 TEST(ElevationSource, posts_are_pixel_centres_for_both_registrations) {
   for (const char* const registration : {"Area", "Point"}) {
     const TemporaryDirectory folder;
-    RasterOptions options;
+    TestRaster options;
     options.change = [&](GDALDataset& dataset) {
       dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, registration);
     };
@@ -79,7 +40,7 @@ TEST(ElevationSource, posts_are_pixel_centres_for_both_registrations) {
 
 TEST(ElevationSource, south_up_rasters_are_turned) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.transform = {-80.5 / 3600, 1.0 / 3600, 0, 39.5 / 3600, 0, 1.0 / 3600};
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   ASSERT_TRUE(grid.ok());
@@ -89,7 +50,7 @@ TEST(ElevationSource, south_up_rasters_are_turned) {
 
 TEST(ElevationSource, the_declared_sentinel_becomes_void) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(22); };
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   ASSERT_TRUE(grid.ok());
@@ -100,7 +61,7 @@ TEST(ElevationSource, the_declared_sentinel_becomes_void) {
 
 TEST(ElevationSource, feet_are_an_exact_quantum) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetUnitType("ft"); };
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   ASSERT_TRUE(grid.ok());
@@ -110,7 +71,7 @@ TEST(ElevationSource, feet_are_an_exact_quantum) {
 // GDAL tells the unit of a vertical system only where the band names none.
 TEST(ElevationSource, the_unit_of_the_vertical_system_counts) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.crs.clear();
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {.crs = "EPSG:4269+6360"});
   ASSERT_TRUE(grid.ok()) << grid.error().message();
@@ -147,7 +108,7 @@ TEST(ElevationSource, a_damaged_dted_record_is_refused) {
 
 TEST(ElevationSource, other_ellipsoids_are_kept) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.crs = "EPSG:4267";  // NAD27, Clarke 1866
   const Result<RawGrid> grid = readElevationSource(makeRaster(folder, options), {});
   ASSERT_TRUE(grid.ok());
@@ -155,18 +116,19 @@ TEST(ElevationSource, other_ellipsoids_are_kept) {
 }
 
 TEST(ElevationSource, what_is_not_read_is_refused_with_the_reason) {
-  RasterOptions options;
+  TestRaster options;
   options.transform[2] = 1e-5;
   EXPECT_NE(refusal(options).message().find("rotated"), std::string::npos);
   options = {};
-  options.crs = "EPSG:32610";
-  EXPECT_NE(refusal(options).message().find("projected"), std::string::npos);
-  options = {};
-  options.type = GDT_Float32;
-  EXPECT_NE(refusal(options).message().find("Float32"), std::string::npos);
-  options = {};
   options.bands = 3;
   EXPECT_NE(refusal(options).message().find("3 bands"), std::string::npos);
+  EXPECT_EQ(refusal(options).kind, ErrorKind::kUsage);
+  options = {};
+  options.type = GDT_CFloat32;
+  EXPECT_NE(refusal(options).message().find("CFloat32"), std::string::npos);
+  options = {};
+  options.crs = "EPSG:4807";  // from Paris, in grads
+  EXPECT_EQ(refusal(options).kind, ErrorKind::kInvalid);
   options = {};
   options.type = GDT_Byte;
   options.prepare = [](GDALDataset& dataset) {
@@ -180,9 +142,6 @@ TEST(ElevationSource, what_is_not_read_is_refused_with_the_reason) {
   options.transform[1] = 1e-10;
   EXPECT_NE(refusal(options).message().find("apart"), std::string::npos);
   options = {};
-  options.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetScale(0.1); };
-  EXPECT_NE(refusal(options).message().find("scales"), std::string::npos);
-  options = {};
   options.change = [](GDALDataset& dataset) {
     dataset.GetRasterBand(1)->SetNoDataValue(7);
     dataset.GetRasterBand(1)->Fill(7);
@@ -192,7 +151,7 @@ TEST(ElevationSource, what_is_not_read_is_refused_with_the_reason) {
 
 TEST(ElevationSource, a_row_on_the_pole_is_accepted_and_one_beyond_refused) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.transform = {0, 1, 0, 90.5, 0, -1};
   EXPECT_TRUE(readElevationSource(makeRaster(folder, options), {}).ok());
   options.transform[3] = 91.5;
@@ -201,7 +160,7 @@ TEST(ElevationSource, a_row_on_the_pole_is_accepted_and_one_beyond_refused) {
 
 TEST(ElevationSource, a_source_without_crs_wants_one) {
   const TemporaryDirectory folder;
-  RasterOptions options;
+  TestRaster options;
   options.crs.clear();
   const std::string path = makeRaster(folder, options);
   const Result<RawGrid> refused = readElevationSource(path, {});

@@ -1,6 +1,7 @@
 #include "tools/common/parse.h"
 
 #include <clocale>
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace deltaz {
@@ -83,6 +84,32 @@ TEST(Parse, bounds_may_cross_the_antimeridian) {
   for (const char* text : {"1,2,3", "0,0,0,1", "0,1,1,1", "0,2,1,1", "0,-91,1,1"}) {
     EXPECT_FALSE(parseBounds(text, "--bounds").ok()) << text;
   }
+}
+
+TEST(Parse, a_quantum_is_exact) {
+  EXPECT_EQ(parseQuantum("0.01", "--quantum").value(), (Rational{1, 100}));
+  EXPECT_EQ(parseQuantum("381/1250", "--quantum").value(), (Rational{381, 1250}));
+  EXPECT_EQ(parseQuantum("0.3048", "--quantum").value(), (Rational{381, 1250}));
+  EXPECT_EQ(parseQuantum("2.5", "--quantum").value(), (Rational{5, 2}));
+  for (const char* const wrong :
+       {"", "0", "-1", "1e-2", "1/0", "0/1", "1.2.3", "/", "1/", "nan", "2000", "0.0000001", "1 ", "."})
+    EXPECT_EQ(parseQuantum(wrong, "--quantum").error().kind, ErrorKind::kUsage) << wrong;
+}
+
+TEST(Parse, a_spacing_has_a_unit) {
+  EXPECT_TRUE(parseSpacing("1as", "--spacing").value().arc_seconds);
+  EXPECT_EQ(parseSpacing("1/3as", "--spacing").value().value, 1.0 / 3);
+  EXPECT_EQ(parseSpacing("30m", "--spacing").value().value, 30);
+  EXPECT_FALSE(parseSpacing("0.5m", "--spacing").value().arc_seconds);
+  for (const char* const wrong : {"", "30", "m", "as", "-1as", "0m", "1e3m", "1km", "1000000as"})
+    EXPECT_EQ(parseSpacing(wrong, "--spacing").error().kind, ErrorKind::kUsage) << wrong;
+}
+
+TEST(Parse, a_stored_value_may_be_nan) {
+  EXPECT_EQ(parseStoredValue("-9999", "--nodata").value(), -9999);
+  EXPECT_TRUE(std::isnan(parseStoredValue("nan", "--nodata").value()));
+  EXPECT_FALSE(parseStoredValue("none", "--nodata").ok());
+  EXPECT_FALSE(parseStoredValue("inf", "--nodata").ok());
 }
 
 }  // namespace

@@ -1,0 +1,330 @@
+#include "libdb/source/source_raster.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include "libdb/source/gdal_session.h"
+#include "libdb/source/grid_placement.h"
+#include "libdb/source/height_units.h"
+#include "libdb/source/source_error.h"
+#include "libdb/source/source_opening.h"
+#include "libdb/source/source_posts.h"
+#include "libdb/source/usgs_dem_check.h"
+
+namespace deltaz {
+
+namespace {
+
+constexpr double kDegreesTolerance = 1e-9;
+constexpr int kRowsPerRead = 256;
+
+// ---- which band
+
+std::string bandText(GDALRasterBand& band, int number) {
+  const std::string description = band.GetDescription();
+  return fmt::format("{} ({}{}{})", number, GDALGetDataTypeName(band.GetRasterDataType()),
+                     band.GetColorInterpretation() == GCI_Undefined
+                         ? ""
+                         : fmt::format(", {}", GDALGetColorInterpretationName(band.GetColorInterpretation())),
+                     description.empty() ? "" : ", " + description);
+}
+
+// The band of elevations: the one asked for, else the only one that is no mask.
+Result<int> chooseBand(GDALDataset& dataset, const std::string& path, int wanted) {
+  const int count = dataset.GetRasterCount();
+  if (count < 1) return refusedSource(path, "the source has no raster band", {}, "Name the raster in it");
+  if (wanted > 0) {
+    if (wanted > count)
+      return usageError("--band", fmt::format("{} has no band {}", path, wanted),
+                        fmt::format("it has {}", count));
+    return wanted;
+  }
+  std::vector<int> candidates;
+  std::string list;
+  for (int number = 1; number <= count; ++number) {
+    GDALRasterBand& band = *dataset.GetRasterBand(number);
+    if (band.GetColorInterpretation() != GCI_AlphaBand) candidates.push_back(number);
+    list += (list.empty() ? "" : ", ") + bandText(band, number);
+  }
+  if (candidates.size() == 1) return candidates.front();
+  return usageError(path,
+                    fmt::format("the source has {} bands, and which one holds elevations is not said", count),
+                    list, "Choose one with --band, if one of them does");
+}
+
+Status checkBand(GDALRasterBand& band, const std::string& path) {
+  if (band.GetColorTable() != nullptr) {
+    return refusedSource(path, "the source has a colour table",
+                         "its values are classes or colours, not elevations");
+  }
+  if (!storedTypeOf(GDALGetDataTypeName(band.GetRasterDataType()))) {
+    return refusedSource(
+        path,
+        fmt::format("elevations of type {} are not read", GDALGetDataTypeName(band.GetRasterDataType())),
+        "a height is one number");
+  }
+  // GDAL before 3.7 reads signed bytes as unsigned ones, and tells them only so.
+  if (const char* signedness = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+      signedness != nullptr && EQUAL(signedness, "SIGNEDBYTE")) {
+    return refusedSource(path, "elevations of signed bytes are not read", {}, "Convert them to Int16 first");
+  }
+  return Success{};
+}
+
+// ---- where the posts are
+
+// The largest index of a post the format holds, and more than any grid has.
+constexpr double kMostPosts = 2147483647.0;
+
+Status placeGeodetic(const SourceDescription& source, const std::string& path, GridHeader& header) {
+  const std::array<double, 6>& transform = source.geotransform;
+  const double spacing_y = std::abs(transform[5]);
+  double west = transform[0] + 0.5 * transform[1];
+  const double first_row = transform[3] + 0.5 * transform[5];
+  const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
+  const double south = std::min(first_row, last_row);
+  const double north = std::max(first_row, last_row);
+  if (south < -90 - kDegreesTolerance || north > 90 + kDegreesTolerance) {
+    return refusedSource(path, fmt::format("the source reaches from latitude {} to {}", south, north),
+                         "there is no such latitude");
+  }
+  const double width = static_cast<double>(source.columns - 1) * transform[1];
+  if (width > 360 + kDegreesTolerance || std::abs(west) > 720)
+    return refusedSource(path, "the source goes more than once round the Earth");
+  // The west edge in [-180, 180), also when rounding left it a hair below.
+  while (west < -180 - kDegreesTolerance) west += 360;
+  while (west >= 180 - kDegreesTolerance) west -= 360;
+  header.x_axis = placeAxis(west, transform[1], source.columns, kLongitudeOrigin);
+  header.y_axis = placeAxis(south, spacing_y, source.rows, kLatitudeOrigin);
+  return Success{};
+}
+
+Status placeGrid(const SourceDescription& source, const std::string& path, const ReferenceSystem& system,
+                 GridHeader& header) {
+  const std::array<double, 6>& transform = source.geotransform;
+  if (transform[2] != 0 || transform[4] != 0) {
+    return refusedSource(path, "the source is rotated against its coordinate axes", {},
+                         "Warp it north-up first, with gdalwarp");
+  }
+  for (const double value : transform) {
+    if (!std::isfinite(value)) return refusedSource(path, "the source's georeferencing is not finite");
+  }
+  if (!(transform[1] > 0) || transform[5] == 0)
+    return refusedSource(path, "the source's columns do not run from west to east");
+  if (source.columns < 2 || source.rows < 2)
+    return refusedSource(path, "the source has fewer than 2 x 2 posts");
+  const double least = system.projected ? kLeastSpacingProjected : kLeastSpacingDegrees;
+  const double spacing_y = std::abs(transform[5]);
+  if (transform[1] < least || spacing_y < least) {
+    return refusedSource(path, "the source's posts are less than 0.1 mm apart",
+                         "its georeferencing is hardly meant so");
+  }
+  header.kind = system.projected ? "projected" : "geodetic";
+  if (!system.projected) return placeGeodetic(source, path, header);
+  const double west = transform[0] + 0.5 * transform[1];
+  const double first_row = transform[3] + 0.5 * transform[5];
+  const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
+  if (std::abs(west) / transform[1] > kMostPosts || std::abs(first_row) / spacing_y > kMostPosts ||
+      std::abs(last_row) / spacing_y > kMostPosts) {
+    return refusedSource(path, "the source lies too far from its origin for so small a spacing of posts");
+  }
+  header.x_axis = placeAxis(west, transform[1], source.columns, kProjectedOrigin);
+  header.y_axis = placeAxis(std::min(first_row, last_row), spacing_y, source.rows, kProjectedOrigin);
+  return Success{};
+}
+
+// ---- the posts
+
+Error unreadable(const std::string& path, const GdalSession& session) {
+  return refusedSource(path, "the source cannot be read to its end", session.lastFailure(),
+                       "It is damaged or cut short");
+}
+
+// Reads all rows of a band, south first. T is what GDAL converts to.
+template <typename T>
+Result<std::vector<T>> readRows(GDALRasterBand& band, GDALDataType type, const SourceDescription& source,
+                                const std::string& path, const GdalSession& session) {
+  const auto columns = static_cast<std::size_t>(source.columns);
+  const int rows = static_cast<int>(source.rows);
+  const bool south_up = source.geotransform[5] > 0;
+  std::vector<T> posts(columns * static_cast<std::size_t>(rows));
+  std::vector<T> buffer(columns * kRowsPerRead);
+  for (int first = 0; first < rows; first += kRowsPerRead) {
+    const int count = std::min(kRowsPerRead, rows - first);
+    if (band.RasterIO(GF_Read, 0, first, static_cast<int>(columns), count, buffer.data(),
+                      static_cast<int>(columns), count, type, 0, 0, nullptr) != CE_None)
+      return unreadable(path, session);
+    for (int row = 0; row < count; ++row) {
+      const int target = south_up ? first + row : rows - 1 - (first + row);
+      std::copy_n(buffer.begin() + static_cast<std::ptrdiff_t>(columns) * row, columns,
+                  posts.begin() + static_cast<std::ptrdiff_t>(columns) * target);
+    }
+  }
+  return posts;
+}
+
+Result<PostValues> readValues(GDALRasterBand& band, const StoredType& type, const SourceDescription& source,
+                              const std::string& path, const GdalSession& session) {
+  PostValues values;
+  const bool fits = !type.floating && type.lowest >= -2147483648.0 && type.highest <= 2147483647.0;
+  if (fits) {
+    DELTAZ_TRY_ASSIGN(values.integers, readRows<std::int32_t>(band, GDT_Int32, source, path, session));
+  } else {
+    DELTAZ_TRY_ASSIGN(values.numbers, readRows<double>(band, GDT_Float64, source, path, session));
+  }
+  return values;
+}
+
+// 1 where a mask or an alpha band of the source says void; empty if it has none.
+Result<std::vector<std::uint8_t>> readMask(GDALRasterBand& band, const SourceDescription& source,
+                                           const std::string& path, const GdalSession& session) {
+  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return std::vector<std::uint8_t>{};
+  DELTAZ_TRY_ASSIGN(std::vector<std::uint8_t> mask,
+                    readRows<std::uint8_t>(*band.GetMaskBand(), GDT_Byte, source, path, session));
+  for (std::uint8_t& value : mask) value = value == 0 ? 1 : 0;
+  return mask;
+}
+
+// ---- what the source says
+
+Result<ReferenceSystem> systemOf(GDALDataset& dataset, const std::string& path, const SourceOptions& options,
+                                 std::vector<std::string>& warnings) {
+  const OGRSpatialReference* const stated = dataset.GetSpatialRef();
+  if (options.crs.empty()) {
+    if (stated == nullptr) {
+      return usageError(path, "the source does not say what its coordinates refer to",
+                        "it has no coordinate reference system",
+                        "Give one with --crs, for example --crs EPSG:4326");
+    }
+  }
+  std::optional<double> epoch;
+  if (stated != nullptr && stated->GetCoordinateEpoch() > 0) epoch = stated->GetCoordinateEpoch();
+  const auto own = [&]() -> Result<ReferenceSystem> {
+    char* wkt = nullptr;
+    const std::array<const char*, 2> format = {"FORMAT=WKT2_2018", nullptr};
+    stated->exportToWkt(&wkt, format.data());
+    const std::string text = wkt == nullptr ? "" : wkt;
+    CPLFree(wkt);
+    return parseReferenceSystem(text, path, epoch);
+  };
+  if (options.crs.empty()) return own();
+  DELTAZ_TRY_ASSIGN(const ReferenceSystem given, parseReferenceSystem(options.crs, "--crs"));
+  if (stated != nullptr) {
+    const Result<ReferenceSystem> said = own();
+    if (!said.ok() || !sameHorizontalSystem(said.value(), given)) {
+      warnings.push_back(fmt::format("{}: --crs '{}' is used, although the source says '{}'", path,
+                                     given.name, said.ok() ? said.value().name : stated->GetName()));
+    }
+  }
+  return given;
+}
+
+void describeBand(GDALDataset& dataset, GDALRasterBand& band, const SourceOptions& options,
+                  SourceDescription& source) {
+  source.data_type = GDALGetDataTypeName(band.GetRasterDataType());
+  source.unit = band.GetUnitType();
+  source.scale = band.GetScale(nullptr);
+  source.offset = band.GetOffset(nullptr);
+  int has_nodata = 0;
+  double nodata = 0;
+  if (band.GetRasterDataType() == GDT_Int64) {
+    nodata = static_cast<double>(band.GetNoDataValueAsInt64(&has_nodata));
+  } else if (band.GetRasterDataType() == GDT_UInt64) {
+    nodata = static_cast<double>(band.GetNoDataValueAsUInt64(&has_nodata));
+  } else {
+    nodata = band.GetNoDataValue(&has_nodata);
+  }
+  if (has_nodata != 0 && !std::isinf(nodata)) source.nodata = nodata;
+  if (options.nodata) source.nodata = options.nodata;
+  const char* const registration = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
+  source.point_registered = registration != nullptr && EQUAL(registration, GDALMD_AOP_POINT);
+}
+
+std::vector<std::string> membersOf(GDALDataset& dataset) {
+  std::vector<std::string> members;
+  if (!EQUAL(dataset.GetDriverName(), "VRT")) return members;
+  const CPLStringList names(dataset.GetFileList());
+  for (int i = 0; i < names.size(); ++i) members.emplace_back(names[i]);
+  return members;
+}
+
+void fillHeader(const ReferenceSystem& system, GDALDataset& dataset, GridHeader& header) {
+  header.unit = "metre";
+  header.crs_wkt = system.wkt;
+  header.coordinate_epoch = system.epoch;
+  header.ellipsoid = system.ellipsoid;
+  header.horizontal_datum = system.horizontal_datum;
+  header.vertical_datum = system.vertical_datum;
+  if (const char* dted = dataset.GetMetadataItem("DTED_VerticalDatum");
+      dted != nullptr && header.vertical_datum == "unknown")
+    header.vertical_datum = dted;
+}
+
+Result<SourceRaster> readOpened(GDALDataset& dataset, const std::string& path, const SourceOptions& options,
+                                const GdalSession& session, std::vector<std::string>& warnings) {
+  SourceRaster raster;
+  raster.path = path;
+  DELTAZ_TRY_ASSIGN(const int band_number, chooseBand(dataset, path, options.band));
+  GDALRasterBand& band = *dataset.GetRasterBand(band_number);
+  DELTAZ_TRY(checkBand(band, path));
+  SourceDescription source;
+  source.name = baseName(path);
+  source.driver = dataset.GetDriver() == nullptr ? "" : dataset.GetDriver()->GetDescription();
+  source.columns = dataset.GetRasterXSize();
+  source.rows = dataset.GetRasterYSize();
+  source.band = band_number;
+  if (dataset.GetGeoTransform(source.geotransform.data()) != CE_None)
+    return refusedSource(path, "the source is not georeferenced", "it does not say where its posts are");
+  describeBand(dataset, band, options, source);
+  if (source.scale == 0 || !std::isfinite(source.scale) || !std::isfinite(source.offset))
+    return refusedSource(
+        path, fmt::format("the source scales its elevations by {} and adds {}", source.scale, source.offset));
+  DELTAZ_TRY_ASSIGN(raster.system, systemOf(dataset, path, options, warnings));
+  DELTAZ_TRY_ASSIGN(source.content, hashOfContent(path, membersOf(dataset)));
+  fillHeader(raster.system, dataset, raster.grid.header);
+  DELTAZ_TRY(placeGrid(source, path, raster.system, raster.grid.header));
+
+  PostMeaning meaning;
+  meaning.path = path;
+  meaning.source = source;
+  meaning.quantum = options.quantum;
+  const std::optional<StoredType> type = storedTypeOf(source.data_type);
+  if (!type) return refusedSource(path, fmt::format("elevations of type {} are not read", source.data_type));
+  meaning.type = *type;
+  const std::string unit = source.unit.empty() ? raster.system.vertical_unit : source.unit;
+  const std::optional<Rational> metres = metresPerUnit(unit);
+  if (!metres) {
+    return refusedSource(path, fmt::format("the elevation unit '{}' is unknown", unit),
+                         "known are metres, feet and US survey feet");
+  }
+  meaning.unit = *metres;
+  const int failures = session.failures();
+  DELTAZ_TRY_ASSIGN(PostValues values, readValues(band, *type, source, path, session));
+  DELTAZ_TRY_ASSIGN(const std::vector<std::uint8_t> masked, readMask(band, source, path, session));
+  // Some drivers stop reading without a failed call.
+  if (session.failures() > failures) return unreadable(path, session);
+  if (source.driver == "USGSDEM") DELTAZ_TRY(checkUsgsDemComplete(path, static_cast<int>(source.columns)));
+  DELTAZ_TRY(interpretPosts(std::move(values), masked, meaning, raster.grid, warnings));
+  raster.grid.header.sources.push_back(meaning.source);
+  return raster;
+}
+
+}  // namespace
+
+Result<SourceRaster> readSourceRaster(const std::string& path, const SourceOptions& options,
+                                      std::vector<std::string>& warnings) {
+  const GdalSession session;
+  constexpr unsigned kOpenFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), kOpenFlags));
+  if (!dataset) {
+    return refusedSource(path, "this is not an elevation raster that can be read", session.lastFailure());
+  }
+  return readOpened(*dataset, path, options, session, warnings);
+}
+
+}  // namespace deltaz

@@ -1,0 +1,148 @@
+// Cutting, filling and resampling.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "libdb/access/grid_geometry.h"
+#include "tests/libdb/source/test_rasters.h"
+
+namespace deltaz {
+namespace {
+
+// Posts at whole seconds from (0, 0) on, a plane that rises 2 m a post eastwards and 3 m northwards.
+TestRaster plane(int columns, int rows) {
+  TestRaster raster;
+  raster.columns = columns;
+  raster.rows = rows;
+  raster.transform = {-0.5 / 3600, 1.0 / 3600, 0, (rows - 0.5) / 3600, 0, -1.0 / 3600};
+  for (int row = rows - 1; row >= 0; --row) {
+    for (int column = 0; column < columns; ++column) raster.values.push_back(2 * column + 3 * row);
+  }
+  return raster;
+}
+
+TEST(Bounds, posts_inside_are_kept_and_one_beyond_each_side) {
+  const TemporaryDirectory folder;
+  const std::string path = makeRaster(folder, plane(20, 20));
+  const RawGrid grid =
+      readOne(path, {.bounds = SourceBounds{4.5 / 3600, 6.0 / 3600, 9.2 / 3600, 12.0 / 3600}});
+  EXPECT_EQ(grid.header.x_axis.first - 180 * 3600, 4);
+  EXPECT_EQ(grid.header.x_axis.count, 7);  // 4 .. 10
+  EXPECT_EQ(grid.header.y_axis.first - 90 * 3600, 6);
+  EXPECT_EQ(grid.header.y_axis.count, 7);  // bounds on a post do not go beyond it
+  EXPECT_EQ(grid.height(0, 0), 2 * 4 + 3 * 6);
+  EXPECT_EQ(readElevationSource(path, {.bounds = SourceBounds{1, 1, 2, 2}}).error().kind, ErrorKind::kUsage);
+}
+
+TEST(Bounds, across_the_antimeridian) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(20, 20);
+  raster.transform[0] = 180 - 10.5 / 3600;
+  const RawGrid grid = readOne(makeRaster(folder, raster),
+                               {.bounds = SourceBounds{180 - 3.0 / 3600, 0, -180 + 4.0 / 3600, 1}});
+  EXPECT_EQ(grid.header.x_axis.count, 8);
+  EXPECT_EQ(grid.height(0, 0), 2 * 7);
+}
+
+TEST(Bounds, of_a_projected_grid) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(400, 400);
+  raster.crs = "EPSG:32631";
+  raster.transform = {500000 - 15, 30, 0, 5000000, 0, -30};
+  const std::string path = makeRaster(folder, raster);
+  const RawGrid whole = readOne(path);
+  const GridGeometry geometry(whole.header, whole.patches);
+  const GeodeticPoint low =
+      geometry.geodeticAt(whole.header.x_axis.first + 100, whole.header.y_axis.first + 100);
+  const GeodeticPoint high =
+      geometry.geodeticAt(whole.header.x_axis.first + 200, whole.header.y_axis.first + 150);
+  const RawGrid cut =
+      readOne(path, {.bounds = SourceBounds{low.longitude, low.latitude, high.longitude, high.latitude}});
+  EXPECT_LE(cut.header.x_axis.first, whole.header.x_axis.first + 100);
+  EXPECT_GE(cut.header.x_axis.first, whole.header.x_axis.first + 90);
+  EXPECT_NEAR(static_cast<double>(cut.header.x_axis.count), 101, 12);
+  EXPECT_NEAR(static_cast<double>(cut.header.y_axis.count), 51, 12);
+  EXPECT_EQ(cut.height(0, 0), whole.height(cut.header.x_axis.first - whole.header.x_axis.first,
+                                           cut.header.y_axis.first - whole.header.y_axis.first));
+}
+
+TEST(VoidFilling, voids_take_heights_between_their_neighbours_and_are_counted) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(9, 9);
+  raster.values[40] = raster.values[41] = -32768;
+  raster.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const std::string path = makeRaster(folder, raster);
+  const SourceArea area = readAll({path}, {.voids = VoidPolicy::kFill});
+  EXPECT_EQ(area.filled_posts, 2u);
+  const RawGrid& grid = area.grids[0];
+  EXPECT_TRUE(grid.valid.empty());
+  EXPECT_NEAR(grid.height(4, 4), 2 * 4 + 3 * 4, 4);
+  EXPECT_EQ(grid.height(0, 0), 0) << "heights that were there stay";
+  EXPECT_EQ(readAll({path}).filled_posts, 0u);
+}
+
+TEST(Resampling, a_plane_stays_a_plane_and_the_error_is_that_of_rounding) {
+  const TemporaryDirectory folder;
+  const RawGrid grid = readOne(makeRaster(folder, plane(61, 61)), {.spacing = PostSpacing{2.5, true}});
+  EXPECT_EQ(grid.header.x_axis.exact_spacing, (Rational{5, 2}));
+  EXPECT_EQ(grid.header.x_axis.count, 25);
+  EXPECT_EQ(grid.header.quantum, (Rational{1, 100}));
+  ASSERT_TRUE(grid.header.resampling.has_value());
+  EXPECT_LE(grid.header.resampling->largest_error, 0.005 + 1e-9);
+  for (std::int64_t row = 0; row < 25; ++row) {
+    for (std::int64_t column = 0; column < 25; ++column)
+      EXPECT_EQ(grid.height(column, row),
+                static_cast<std::int32_t>(
+                    std::lround(100 * (5.0 * static_cast<double>(column) + 7.5 * static_cast<double>(row)))));
+  }
+}
+
+TEST(Resampling, posts_that_fall_on_the_sources_keep_their_heights) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(61, 61);
+  for (std::size_t k = 0; k < raster.values.size(); ++k) raster.values[k] = static_cast<double>(k * k % 977);
+  const std::string path = makeRaster(folder, raster);
+  const RawGrid source = readOne(path),
+                grid = readOne(path, {.quantum = Rational{1, 1}, .spacing = PostSpacing{3, true}});
+  EXPECT_EQ(grid.header.height_error, 0);
+  for (std::int64_t row = 0; row < grid.header.y_axis.count; ++row) {
+    for (std::int64_t column = 0; column < grid.header.x_axis.count; ++column)
+      EXPECT_EQ(grid.height(column, row), source.height(3 * column, 3 * row));
+  }
+  EXPECT_GT(grid.header.resampling->largest_error, 100) << "what lies between is lost, and it is said";
+  EXPECT_GT(grid.header.resampling->largest_error, grid.header.resampling->rms_error);
+}
+
+TEST(Resampling, to_a_projection_and_back_the_surface_stays) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(200, 200);
+  raster.transform[0] += 3;
+  raster.transform[3] += 45;
+  const SourceArea area =
+      readAll({makeRaster(folder, raster)}, {.grid = "EPSG:32631", .spacing = PostSpacing{20, false}});
+  ASSERT_EQ(area.grids.size(), 1u);
+  const RawGrid& grid = area.grids[0];
+  EXPECT_EQ(grid.header.kind, "projected");
+  ASSERT_TRUE(grid.patches);
+  EXPECT_EQ(grid.header.x_axis.spacing, 20);
+  EXPECT_LT(grid.header.resampling->largest_error, 0.02) << "a plane in degrees is nearly one in metres";
+  // A post's height is that of the plane where the post lies.
+  const GridGeometry geometry(grid.header, grid.patches);
+  const std::int64_t i = grid.header.x_axis.first + grid.header.x_axis.count / 2,
+                     j = grid.header.y_axis.first + grid.header.y_axis.count / 2;
+  const GeodeticPoint point = geometry.geodeticAt(i, j);
+  EXPECT_NEAR(grid.height(grid.header.x_axis.count / 2, grid.header.y_axis.count / 2) / 100.0,
+              2 * (point.longitude - 3) * 3600 + 3 * (point.latitude - 45) * 3600, 0.006);
+}
+
+TEST(Resampling, spacings_of_the_wrong_kind_are_refused) {
+  const TemporaryDirectory folder;
+  const std::string path = makeRaster(folder, plane(20, 20));
+  EXPECT_EQ(readElevationSource(path, {.spacing = PostSpacing{30, false}}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(readElevationSource(path, {.grid = "EPSG:32631", .spacing = PostSpacing{1, true}}).error().kind,
+            ErrorKind::kUsage);
+  EXPECT_EQ(readElevationSource(path, {.grid = "nonsense"}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(readElevationSource(path, {.spacing = PostSpacing{300, true}}).error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace deltaz
