@@ -50,11 +50,11 @@ namespace deltaz {
   X(kHgtRing, "HGT_RING")                        \
   X(kHgtBorder, "HGT_BORDER")                    \
   X(kHgtPatches, "HGT_PATCHES")                  \
+  X(kHgtSeam, "HGT_SEAM")                        \
   X(kErrGeometric, "ERR_GEOMETRIC")              \
   X(kErrRms, "ERR_RMS")                          \
   X(kErrAncestor, "ERR_ANCESTOR")                \
   X(kErrCoverage, "ERR_COVERAGE")                \
-  X(kHgtSeam, "HGT_SEAM")                        \
   X(kSrcHeight, "SRC_HEIGHT")                    \
   X(kSrcVoid, "SRC_VOID")                        \
   X(kSrcExtent, "SRC_EXTENT")                    \
