@@ -9,7 +9,7 @@ namespace deltaz {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 48;
-constexpr std::size_t kRunBytes = 16, kVertexBytes = 40, kFaceBytes = 12, kReplacedBytes = 24;
+constexpr std::size_t kRunBytes = 24, kVertexBytes = 40, kFaceBytes = 12, kReplacedBytes = 24;
 constexpr std::uint32_t kTopFlag = 1;
 
 // Whether post (column, row) is one of the grid's.
@@ -36,12 +36,12 @@ std::vector<std::byte> encodeSeam(const Seam& seam) {
   writer.put(static_cast<std::uint32_t>(seam.vertices.size()));
   writer.put(static_cast<std::uint32_t>(seam.faces.size()));
   for (const auto& replaced : seam.replaced) writer.put(static_cast<std::uint32_t>(replaced.size()));
-  writer.put(seam.first_row);
   writer.put(seam.error);
   writer.putZeros(kHeaderBytes - writer.size());
-  for (const auto& run : seam.runs) {
-    writer.put(run[0]);
-    writer.put(run[1]);
+  for (const CellRun& run : seam.runs) {
+    writer.put(run.row);
+    writer.put(run.begin);
+    writer.put(run.end);
   }
   for (const SeamVertex& vertex : seam.vertices) {
     writer.put(vertex.column);
@@ -81,7 +81,6 @@ Result<Seam> decodeSeam(std::span<const std::byte> bytes, const std::vector<Grid
   const auto vertices = reader.get<std::uint32_t>();
   const auto faces = reader.get<std::uint32_t>();
   const std::array<std::uint32_t, 2> replaced = {reader.get<std::uint32_t>(), reader.get<std::uint32_t>()};
-  seam.first_row = reader.get<std::int64_t>();
   seam.error = reader.get<double>();
   while (reader.position() < kHeaderBytes) {
     if (reader.get<std::uint8_t>() != 0) return damaged("a reserved byte is not zero");
@@ -97,12 +96,14 @@ Result<Seam> decodeSeam(std::span<const std::byte> bytes, const std::vector<Grid
 
   const GridHeader& lower = grids[seam.lower];
   for (std::uint32_t k = 0; k < runs; ++k) {
-    const auto begin = reader.get<std::int64_t>(), end = reader.get<std::int64_t>();
-    const std::int64_t row = seam.first_row + static_cast<std::int64_t>(k);
-    const bool empty = begin == end;
-    if (begin > end || (!empty && (!holdsCell(lower, begin, row) || !holdsCell(lower, end - 1, row))))
+    CellRun run;
+    run.row = reader.get<std::int64_t>();
+    run.begin = reader.get<std::int64_t>();
+    run.end = reader.get<std::int64_t>();
+    if (run.begin >= run.end || !holdsCell(lower, run.begin, run.row) ||
+        !holdsCell(lower, run.end - 1, run.row))
       return damaged("it removes cells that are not there");
-    seam.runs.push_back({begin, end});
+    seam.runs.push_back(run);
   }
   for (std::uint32_t k = 0; k < vertices; ++k) {
     SeamVertex vertex;

@@ -41,11 +41,16 @@ struct ReplacedFace {
   bool operator==(const ReplacedFace&) const = default;
 };
 
+// Cells of one row, from column `begin` up to but not including `end`; global level-0 indices.
+struct CellRun {
+  std::int64_t row = 0, begin = 0, end = 0;
+  bool operator==(const CellRun&) const = default;
+};
+
 struct Seam {
   std::uint16_t upper = 0, lower = 0;  // grids
-  // Cells of the lower grid that are not drawn at all: row first_row + k, columns [runs[k][0], runs[k][1]).
-  std::int64_t first_row = 0;
-  std::vector<std::array<std::int64_t, 2>> runs;
+  // Cells of the lower grid that are not drawn at all.
+  std::vector<CellRun> runs;  // in the order of row, column
   std::vector<SeamVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> faces;    // vertices, counter-clockwise from above
   std::array<std::vector<ReplacedFace>, 2> replaced;  // by SeamSide; in the order of row, column, face

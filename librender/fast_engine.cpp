@@ -41,9 +41,10 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   Stopwatch watch;
   const std::uint64_t bytes_before = database.bytesRead();
   DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
-  DELTAZ_TRY_ASSIGN(
-      const Schedule schedule,
-      scheduleNodes(database, environment.view, {options.tolerance, options.fixed_level}, statistics.nodes));
+  const SeamIndex seams(database);
+  DELTAZ_TRY_ASSIGN(const Schedule schedule,
+                    scheduleNodes(database, seams, environment.view, {options.tolerance, options.fixed_level},
+                                  statistics.nodes));
   statistics.level = schedule.level;
   statistics.coarsest_level = schedule.coarsest_level;
   statistics.projected_error = schedule.projected_error;
@@ -51,7 +52,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
 
   const std::vector<CutNode>& cut = schedule.nodes;
   const CutIndex index(database, cut);
-  const std::vector<std::uint8_t> wanted = nodesToProcess(database, cut, index);
+  const std::vector<std::uint8_t> wanted = nodesToProcess(database, cut, index, seams);
   DELTAZ_TRY_ASSIGN(const std::vector<std::optional<TerrainTile>> tiles, readTiles(database, cut, wanted));
   for (const std::optional<TerrainTile>& tile : tiles) {
     if (tile)
@@ -69,15 +70,17 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
         terrainVertices(*tiles[n], database.grid(tiles[n]->grid), environment.view, environment.light);
     processed[n] = {&*tiles[n], &vertices[n]};
   });
-  const BorderStitcher stitcher(database, cut, index, processed);
+  const BorderStitcher stitcher(database, cut, index, seams, processed);
   const Pretiler pretiler(environment.view);
   std::vector<PretiledNode> pretiled(cut.size());
   std::vector<FrameStatistics::Triangles> of_node(cut.size());
   tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
     if (!cut[n].in_view) return;
     TerrainSplits splits;
-    const TerrainVertices stitched = stitcher.vertices(static_cast<std::uint32_t>(n), splits);
-    const TerrainFaces faces = terrainFaces(*tiles[n], stitched.position, splits);
+    TerrainVertices stitched = stitcher.vertices(static_cast<std::uint32_t>(n), splits);
+    TerrainFaces faces = terrainFaces(*tiles[n], stitched.position, splits, seams.replacedFaces(*tiles[n]));
+    for (const TerrainFace& face : stitcher.seamFaces(static_cast<std::uint32_t>(n), stitched))
+      addFace(faces, stitched.position, face);
     pretiler.process(stitched, faces, cut[n].node.number, pretiled[n]);
     of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
   });

@@ -11,6 +11,7 @@
 #include "formats/patch_lattice.h"
 #include "formats/version.h"
 #include "libdb/build/area_bounds.h"
+#include "libdb/build/area_seams.h"
 #include "libdb/build/grid_build.h"
 #include "libdb/build/publication.h"
 #include "libdb/build/worker_pool.h"
@@ -33,7 +34,7 @@ struct OrderedNode {
 class AreaBuild {
  public:
   AreaBuild(const FileSystem& files, std::span<const RawGrid> grids, const BuildOptions& options)
-      : files_(files), options_(options), workers_(options.threads) {
+      : files_(files), sources_(grids), options_(options), workers_(options.threads) {
     for (const RawGrid& grid : grids) grids_.emplace_back(grid, options.leaf_cells);
     orderNodes();
   }
@@ -53,10 +54,12 @@ class AreaBuild {
       done += share;
     }
     gatherArea();
+    DELTAZ_TRY_ASSIGN(seams_, makeSeams(sources_));
     report("terrain", 0.6);
     DELTAZ_TRY(writeTerrain(publication));
     report("nodes", 0.95);
     DELTAZ_TRY(writePatches(publication));
+    DELTAZ_TRY(writeSeams(publication));
     DELTAZ_TRY(writeNodes(publication));
     describeArea();
     DELTAZ_TRY(publication.publish(area_));
@@ -169,6 +172,20 @@ class AreaBuild {
     return Success{};
   }
 
+  Status writeSeams(Publication& publication) {
+    if (seams_.empty()) return Success{};
+    const std::string name = fmt::format("seams-{:06}.dzj", publication.generation());
+    DELTAZ_TRY_ASSIGN(ContainerWriter writer,
+                      ContainerWriter::create(files_, publication.newFilePath(name), ContentKind::kSeams));
+    for (const Seam& seam : seams_) {
+      DELTAZ_TRY_ASSIGN([[maybe_unused]] const std::uint32_t block,
+                        writer.append(BlockType::kSeam, encodeSeam(seam)));
+    }
+    DELTAZ_TRY_ASSIGN(const FileIdentity identity, writer.finish());
+    area_.files.push_back({FileRole::kSeams, 0, name, identity.length, identity.id});
+    return Success{};
+  }
+
   // A cluster's record: no data, all children's bounds.
   static NodeRecord clusterRecord(std::uint8_t level, const NodeBounds& bounds,
                                   const std::array<std::int64_t, 3>& parent_centroid) {
@@ -276,6 +293,7 @@ class AreaBuild {
   }
 
   const FileSystem& files_;
+  std::span<const RawGrid> sources_;
   const BuildOptions& options_;
   WorkerPool workers_;
   std::deque<GridBuild> grids_;
@@ -283,6 +301,7 @@ class AreaBuild {
   std::vector<std::vector<std::uint32_t>> numbers_;  // record number by grid and planned node
   NodeBounds bounds_;                                // of the area; heights mean nothing
   AreaHeader area_;
+  std::vector<Seam> seams_;
 };
 
 Status checkGrids(std::span<const RawGrid> grids) {

@@ -48,7 +48,8 @@ Result<AreaHeader> existingArea(const FileSystem& files, const std::string& targ
 std::uint64_t generationOf(const std::string& name) {
   const bool ours = (name.starts_with("nodes-") && name.ends_with(".dzn")) ||
                     (name.starts_with("terrain-") && name.ends_with(".dzt")) ||
-                    (name.starts_with("patches-") && name.ends_with(".dzp"));
+                    (name.starts_with("patches-") && name.ends_with(".dzp")) ||
+                    (name.starts_with("seams-") && name.ends_with(".dzj"));
   if (!ours) return 0;
   const std::size_t dash = name.find('-');
   if (dash == std::string::npos) return 0;

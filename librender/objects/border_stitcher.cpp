@@ -1,6 +1,7 @@
 #include "librender/objects/border_stitcher.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace deltaz {
 namespace {
@@ -101,13 +102,22 @@ bool faceOnEdge(const TerrainTile& tile, Side side, int edge) {
 }  // namespace
 
 std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
-                                         const CutIndex& index) {
+                                         const CutIndex& index, const SeamIndex& seams) {
   std::vector<std::uint8_t> wanted(cut.size(), 0);
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t n = 0; n < cut.size(); ++n) {
     if (!cut[n].in_view) continue;
     wanted[n] = 1;
     waiting.push_back(n);
+    const LeafSeams* const leaf =
+        cut[n].node.record.level == 0 ? seams.leaf(positionOf(cut[n].node.record)) : nullptr;
+    if (leaf == nullptr) continue;
+    for (const NodePosition& partner : leaf->partners) {
+      const std::uint32_t other = index.at(partner);
+      if (other == CutIndex::kNone || wanted[other] != 0) continue;
+      wanted[other] = 1;
+      waiting.push_back(other);
+    }
   }
   while (!waiting.empty()) {
     const std::uint32_t n = waiting.back();
@@ -131,8 +141,9 @@ std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::ve
 }
 
 BorderStitcher::BorderStitcher(const Database& database, const std::vector<CutNode>& cut,
-                               const CutIndex& index, const std::vector<ProcessedNode>& processed)
-    : database_(database), cut_(cut), index_(index), processed_(processed) {}
+                               const CutIndex& index, const SeamIndex& seams,
+                               const std::vector<ProcessedNode>& processed)
+    : database_(database), cut_(cut), index_(index), seams_(seams), processed_(processed) {}
 
 // Whether coarser node `node` draws a face on the edge of its border that the post lies inside of.
 bool BorderStitcher::drawsFaceOnEdge(std::uint32_t node, std::int64_t column, std::int64_t row) const {
@@ -250,6 +261,81 @@ TerrainVertices BorderStitcher::vertices(std::uint32_t n, TerrainSplits& splits,
     }
   }
   return result;
+}
+
+std::optional<BorderStitcher::Resolved> BorderStitcher::ownPost(std::uint16_t grid, std::int64_t column,
+                                                                std::int64_t row) const {
+  const Touching around = touching(index_, grid, column, row);
+  for (int k = 0; k < around.count; ++k) {
+    const std::uint32_t n = around.node[static_cast<std::size_t>(k)];
+    const TerrainTile* const tile = processed_[n].tile;
+    if (tile == nullptr || tile->level != 0) continue;
+    const std::int64_t i = column - tile->first_column, j = row - tile->first_row;
+    if (i < 0 || j < 0 || i >= tile->columns || j >= tile->rows) continue;
+    const auto vertex = static_cast<std::size_t>(j * tile->columns + i);
+    return Resolved{processed_[n].vertices->position[vertex], processed_[n].vertices->color[vertex]};
+  }
+  return std::nullopt;
+}
+
+std::optional<BorderStitcher::Resolved> BorderStitcher::seamVertex(const Seam& seam,
+                                                                   const SeamVertex& vertex) const {
+  const std::uint16_t grid = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
+  // A post may lie on a border with a coarser node, too; a point between posts never does.
+  if (vertex.weight1 == 0 && vertex.weight2 == 0) return resolve(grid, vertex.column, vertex.row);
+  const auto p0 = ownPost(grid, vertex.column, vertex.row);
+  if (!p0) return std::nullopt;
+  Resolved result = *p0;
+  const auto lean = [&](const std::array<std::int8_t, 2>& step, double weight) {
+    if (weight == 0) return true;
+    const auto to = ownPost(grid, vertex.column + step[0], vertex.row + step[1]);
+    if (!to) return false;
+    result.position = result.position + (to->position - p0->position) * weight;
+    result.color = result.color + (to->color + p0->color * -1) * weight;
+    return true;
+  };
+  if (!lean(vertex.to_p1, vertex.weight1) || !lean(vertex.to_p2, vertex.weight2)) return std::nullopt;
+  return result;
+}
+
+std::vector<TerrainFace> BorderStitcher::seamFaces(std::uint32_t n, TerrainVertices& vertices,
+                                                   std::vector<SeamVertexName>* names) const {
+  std::vector<TerrainFace> faces;
+  const NodeRecord& record = cut_[n].node.record;
+  const LeafSeams* const leaf = record.level == 0 ? seams_.leaf(positionOf(record)) : nullptr;
+  if (leaf == nullptr) return faces;
+  const TerrainTile& tile = *processed_[n].tile;
+  std::unordered_map<std::uint64_t, std::optional<std::uint32_t>> placed;
+  const auto place = [&](std::uint32_t seam, std::uint32_t vertex) {
+    const auto [found, fresh] = placed.emplace(std::uint64_t{seam} << 32 | vertex, std::nullopt);
+    if (!fresh) return found->second;
+    const Seam& of = seams_.seams()[seam];
+    if (const auto resolved = seamVertex(of, of.vertices[vertex])) {
+      found->second = static_cast<std::uint32_t>(vertices.position.size());
+      vertices.position.push_back(resolved->position);
+      vertices.color.push_back(resolved->color);
+      if (names != nullptr) names->push_back({seam, vertex});
+    }
+    return found->second;
+  };
+  for (const LeafReplacement& replacement : leaf->replaced) {
+    const ReplacedFace& replaced = replacement.face;
+    const auto cell = static_cast<std::uint32_t>((replaced.row - tile.first_row) * (tile.columns - 1) +
+                                                 (replaced.column - tile.first_column));
+    for (std::uint32_t f = 0; f < replaced.face_count; ++f) {
+      TerrainFace face;
+      face.identity = cell << 1 | (replaced.top ? 1 : 0);
+      bool complete = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at =
+            place(replacement.seam, seams_.seams()[replacement.seam].faces[replaced.first_face + f][k]);
+        complete = complete && at.has_value();
+        face.vertex[k] = at.value_or(0);
+      }
+      if (complete) faces.push_back(face);
+    }
+  }
+  return faces;
 }
 
 }  // namespace deltaz

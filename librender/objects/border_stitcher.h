@@ -24,6 +24,7 @@
 #include "libdb/access/terrain_tile.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/scene/cut.h"
+#include "librender/scene/seam_index.h"
 
 namespace deltaz {
 
@@ -33,21 +34,29 @@ struct ProcessedNode {
   const TerrainVertices* vertices = nullptr;
 };
 
-// The nodes of a cut that must be processed to draw what is in view: those in view, and the coarser ones that
-// touch them. One flag a node.
+// The nodes of a cut that must be processed to draw what is in view: those in view, the coarser ones that
+// touch them, and the leaves their seams stand on. One flag a node.
 std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
-                                         const CutIndex& index);
+                                         const CutIndex& index, const SeamIndex& seams);
 
 class BorderStitcher {
  public:
   // All arguments are referred to and must live as long. `processed` has one entry for each node of the cut.
   BorderStitcher(const Database& database, const std::vector<CutNode>& cut, const CutIndex& index,
-                 const std::vector<ProcessedNode>& processed);
+                 const SeamIndex& seams, const std::vector<ProcessedNode>& processed);
 
   // The vertices of node `n` with its border resolved, and behind its posts the points that split its faces.
   // `posts`, if given, becomes the level-0 index (column, row) of each vertex, which a split point has, too.
   TerrainVertices vertices(std::uint32_t n, TerrainSplits& splits,
                            std::vector<std::array<std::int64_t, 2>>* posts = nullptr) const;
+
+  // The faces seams put in the place of leaf `n`'s own, back faces included, and their vertices, which are
+  // appended to `vertices`. `names`, if given, gets one entry for each vertex appended.
+  struct SeamVertexName {
+    std::uint32_t seam = 0, vertex = 0;
+  };
+  std::vector<TerrainFace> seamFaces(std::uint32_t n, TerrainVertices& vertices,
+                                     std::vector<SeamVertexName>* names = nullptr) const;
 
  private:
   struct Resolved {
@@ -56,11 +65,15 @@ class BorderStitcher {
   };
   // Nothing if no processed node has the post.
   std::optional<Resolved> resolve(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
+  std::optional<Resolved> seamVertex(const Seam& seam, const SeamVertex& vertex) const;
+  // A post as the object processor placed it.
+  std::optional<Resolved> ownPost(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
   bool drawsFaceOnEdge(std::uint32_t node, std::int64_t column, std::int64_t row) const;
 
   const Database& database_;
   const std::vector<CutNode>& cut_;
   const CutIndex& index_;
+  const SeamIndex& seams_;
   const std::vector<ProcessedNode>& processed_;
 };
 

@@ -116,20 +116,26 @@ std::span<const std::uint32_t> pointsOn(const std::vector<std::vector<std::uint3
 
 }  // namespace
 
+void addFace(TerrainFaces& faces, const std::vector<Vector3>& position, const TerrainFace& face) {
+  ++faces.in;
+  const auto& [a, b, c] = face.vertex;
+  if (isBackFacing(position[a], position[b], position[c])) {
+    ++faces.back_facing;
+  } else {
+    faces.front.push_back(face);
+  }
+}
+
 TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position,
-                          const TerrainSplits& splits) {
+                          const TerrainSplits& splits, const std::vector<std::uint8_t>& left_out) {
   TerrainFaces faces;
   if (tile.columns < 2 || tile.rows < 2) return faces;
   faces.front.reserve(static_cast<std::size_t>(tile.columns - 1) * static_cast<std::size_t>(tile.rows - 1) *
                       2);
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t identity) {
-    ++faces.in;
-    if (isBackFacing(position[a], position[b], position[c])) {
-      ++faces.back_facing;
-    } else {
-      faces.front.push_back({{a, b, c}, identity});
-    }
+    addFace(faces, position, {{a, b, c}, identity});
   };
+  const auto drawn = [&](std::uint32_t identity) { return left_out.empty() || left_out[identity] == 0; };
   // A face with points on its edges a-b and b-c: a fan from c through those on a-b, and one from the last of
   // them through those on b-c.
   const auto add_split = [&](std::uint32_t a, std::span<const std::uint32_t> on_ab, std::uint32_t b,
@@ -156,13 +162,13 @@ TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& p
       const std::uint32_t north_east = north_west + 1;
       const std::uint32_t cell =
           static_cast<std::uint32_t>(j) * (columns - 1) + static_cast<std::uint32_t>(i);
-      if (tile.bottomFaceValid(i, j)) {
+      if (tile.bottomFaceValid(i, j) && drawn(cell << 1)) {
         add_split(south_west, j == 0 ? pointsOn(splits.south, i) : std::span<const std::uint32_t>{},
                   south_east,
                   i + 2 == tile.columns ? pointsOn(splits.east, j) : std::span<const std::uint32_t>{},
                   north_east, cell << 1);
       }
-      if (tile.topFaceValid(i, j)) {
+      if (tile.topFaceValid(i, j) && drawn(cell << 1 | 1)) {
         // Its border edges run westwards and southwards.
         north.clear();
         west.clear();

@@ -61,9 +61,13 @@ struct TerrainSplits {
   std::vector<std::vector<std::uint32_t>> south, east, north, west;
 };
 
+// Appends a face to the front ones, or counts it as a back face.
+void addFace(TerrainFaces& faces, const std::vector<Vector3>& position, const TerrainFace& face);
+
 // Faces whose three posts are valid, sorted into front and back, cells row by row, bottom face before top
 // face; a face that is split keeps its identity in all its parts.
+// `left_out` has 1 at the identities of faces that are not drawn; empty for none.
 TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& position,
-                          const TerrainSplits& splits = {});
+                          const TerrainSplits& splits = {}, const std::vector<std::uint8_t>& left_out = {});
 
 }  // namespace deltaz

@@ -130,28 +130,14 @@ void TileTransform::apply(const ViewTransform& view, std::vector<Vector3>& out) 
   out.reserve(postCount(*tile_));
   switch (kind_) {
     case TransformKind::kExact:
-      return applyExact(view, out);
+      out = terrainPositions(*tile_, *geometry_, view);
+      return;
     case TransformKind::kDelta:
       return applyDelta(view, out);
     case TransformKind::kMatrix:
       return applyMatrix(view, out);
     case TransformKind::kLocal:
       return applyLocal(view, out);
-  }
-}
-
-void TileTransform::applyExact(const ViewTransform& view, std::vector<Vector3>& out) const {
-  const TerrainTile& tile = *tile_;
-  if (geometry_->isGeodetic()) {
-    out = terrainPositions(tile, *geometry_, view);
-    return;
-  }
-  const std::vector<PostPlace> places =
-      geometry_->postPlaces(tile.level, {tile.first_column, tile.first_column + tile.columns},
-                            {tile.first_row, tile.first_row + tile.rows});
-  for (int j = 0; j < tile.rows; ++j) {
-    for (int i = 0; i < tile.columns; ++i)
-      out.push_back(view.toView(places[out.size()].at(geometry_->metres(tile.height(i, j)))));
   }
 }
 

@@ -1,7 +1,7 @@
 // Four ways from a tile's posts to view space, behind one interface, so that their run time and their error
 // can be measured side by side (tests/bench/bench_transforms.cpp).
 //
-// exact   the separable WGS-84 transform in double (terrain_object_processor.h)
+// exact   terrain_object_processor.h in double: the separable WGS-84 transform, or a projected grid's patches
 // delta   the report's grid transform (5.5.2, Eq 1-5): the tile is a flat grid, the first post goes through
 //         the whole matrix, each next one adds the axis and its delta-z times the vertical axis, three
 //         multiplications and six additions a post, in single precision, so rounding accumulates
@@ -52,7 +52,6 @@ class TileTransform {
   void prepareDeltas();
   void prepareHeights();
   void prepareOffsets();
-  void applyExact(const ViewTransform& view, std::vector<Vector3>& out) const;
   void applyDelta(const ViewTransform& view, std::vector<Vector3>& out) const;
   void applyMatrix(const ViewTransform& view, std::vector<Vector3>& out) const;
   void applyLocal(const ViewTransform& view, std::vector<Vector3>& out) const;

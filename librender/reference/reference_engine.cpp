@@ -8,11 +8,13 @@
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
+#include <unordered_map>
 #include <vector>
 
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
+#include "librender/scene/seam_index.h"
 #include "librender/scene/stopwatch.h"
 #include "librender/scene/view_volume.h"
 
@@ -65,33 +67,120 @@ std::vector<Vertex> verticesOf(const TerrainTile& tile, const GridGeometry& geom
   return vertices;
 }
 
-// The valid faces of a tile that are not turned away from the eye.
+// Appends the triangle unless it is turned away from the eye.
+void addTriangle(std::vector<Triangle>& triangles, FrameStatistics::Triangles& counts, const Vertex& a,
+                 const Vertex& b, const Vertex& c, std::uint64_t identity) {
+  ++counts.in;
+  const Vector3 normal = cross(b.position - a.position, c.position - a.position);
+  if (dot(normal, a.position) >= 0) {
+    ++counts.back_facing;
+    return;
+  }
+  triangles.push_back({{&a, &b, &c}, identity});
+}
+
+// The valid faces of a tile that are not turned away from the eye and that no seam has replaced.
 std::vector<Triangle> trianglesOf(const TerrainTile& tile, const std::vector<Vertex>& vertices,
-                                  std::uint32_t record, FrameStatistics::Triangles& counts) {
+                                  std::uint32_t record, const std::vector<std::uint8_t>& replaced,
+                                  FrameStatistics::Triangles& counts) {
   std::vector<Triangle> triangles;
-  const auto add = [&](int cell_i, int cell_j, bool top, const Vertex& a, const Vertex& b, const Vertex& c) {
-    ++counts.in;
-    const Vector3 normal = cross(b.position - a.position, c.position - a.position);
-    if (dot(normal, a.position) >= 0) {
-      ++counts.back_facing;
-      return;
-    }
-    const std::uint64_t cell =
-        static_cast<std::uint64_t>(cell_j) * static_cast<std::uint64_t>(tile.columns - 1) +
-        static_cast<std::uint64_t>(cell_i);
-    triangles.push_back({{&a, &b, &c}, std::uint64_t{record} << 32 | cell << 1 | (top ? 1 : 0)});
-  };
   for (int j = 0; j + 1 < tile.rows; ++j) {
     for (int i = 0; i + 1 < tile.columns; ++i) {
       const auto post = [&](int di, int dj) -> const Vertex& {
         return vertices[static_cast<std::size_t>(j + dj) * static_cast<std::size_t>(tile.columns) +
                         static_cast<std::size_t>(i + di)];
       };
-      if (tile.bottomFaceValid(i, j)) add(i, j, false, post(0, 0), post(1, 0), post(1, 1));
-      if (tile.topFaceValid(i, j)) add(i, j, true, post(0, 0), post(1, 1), post(0, 1));
+      const std::size_t bottom =
+          2 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns - 1) +
+               static_cast<std::size_t>(i));
+      const auto identity = std::uint64_t{record} << 32 | bottom;
+      if (tile.bottomFaceValid(i, j) && (replaced.empty() || replaced[bottom] == 0))
+        addTriangle(triangles, counts, post(0, 0), post(1, 0), post(1, 1), identity);
+      if (tile.topFaceValid(i, j) && (replaced.empty() || replaced[bottom + 1] == 0))
+        addTriangle(triangles, counts, post(0, 0), post(1, 1), post(0, 1), identity | 1);
     }
   }
   return triangles;
+}
+
+// The posts of all leaves, by grid and place.
+class AllPosts {
+ public:
+  AllPosts(const Database& database, const std::vector<Node>& nodes,
+           const std::vector<std::vector<Vertex>>& vertices)
+      : database_(database), vertices_(vertices) {
+    for (std::size_t n = 0; n < nodes.size(); ++n) leaves_.emplace(positionOf(nodes[n].record), n);
+  }
+  // The leaf that has cell (column, row), or the last one before the grid's end.
+  std::size_t leaf(std::uint16_t grid, std::int64_t column, std::int64_t row) const {
+    const GridGeometry& geometry = database_.grid(grid);
+    const std::int64_t cells = geometry.header().leaf_cells;
+    return leaves_.at(
+        {grid, 0,
+         static_cast<std::int32_t>(floorDivide(std::min(column, geometry.columnsAt(0).end - 2), cells)),
+         static_cast<std::int32_t>(floorDivide(std::min(row, geometry.rowsAt(0).end - 2), cells))});
+  }
+  const Vertex& post(std::uint16_t grid, std::int64_t column, std::int64_t row) const {
+    const std::size_t n = leaf(grid, column, row);
+    const GridGeometry& geometry = database_.grid(grid);
+    const std::int64_t cells = geometry.header().leaf_cells;
+    const auto within = [&](std::int64_t index, PostRange posts) {
+      const std::int64_t node = floorDivide(std::min(index, posts.end - 2), cells);
+      return geometry.nodePosts(posts, static_cast<std::int32_t>(node));
+    };
+    const PostRange columns = within(column, geometry.columnsAt(0)), rows = within(row, geometry.rowsAt(0));
+    return vertices_[n][static_cast<std::size_t>((row - rows.begin) * columns.size() +
+                                                 (column - columns.begin))];
+  }
+
+ private:
+  const Database& database_;
+  const std::vector<std::vector<Vertex>>& vertices_;
+  std::unordered_map<NodePosition, std::size_t, NodePositionHash> leaves_;
+};
+
+std::vector<Vertex> seamVertices(const Seam& seam, const AllPosts& posts) {
+  std::vector<Vertex> vertices;
+  for (const SeamVertex& vertex : seam.vertices) {
+    const std::uint16_t grid = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
+    const Vertex& p0 = posts.post(grid, vertex.column, vertex.row);
+    Vertex sum = p0;
+    const auto lean = [&](const std::array<std::int8_t, 2>& step, double weight) {
+      if (weight == 0) return;
+      const Vertex& p = posts.post(grid, vertex.column + step[0], vertex.row + step[1]);
+      sum.position = sum.position + (p.position - p0.position) * weight;
+      sum.color = sum.color + (p.color + p0.color * -1) * weight;
+    };
+    lean(vertex.to_p1, vertex.weight1);
+    lean(vertex.to_p2, vertex.weight2);
+    vertices.push_back(sum);
+  }
+  return vertices;
+}
+
+// What seams draw in the place of leaves' own faces, added to those leaves' triangles.
+void addSeamTriangles(const Seam& seam, const std::vector<Vertex>& vertices, const AllPosts& posts,
+                      const Database& database, const std::vector<Node>& nodes,
+                      std::vector<std::vector<Triangle>>& triangles,
+                      std::vector<FrameStatistics::Triangles>& counts) {
+  for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
+    const std::uint16_t grid = side == SeamSide::kUpper ? seam.upper : seam.lower;
+    const GridGeometry& geometry = database.grid(grid);
+    for (const ReplacedFace& replaced : seam.replacedOf(side)) {
+      const std::size_t n = posts.leaf(grid, replaced.column, replaced.row);
+      const PostRange columns = geometry.nodePosts(geometry.columnsAt(0), nodes[n].record.x);
+      const PostRange rows = geometry.nodePosts(geometry.rowsAt(0), nodes[n].record.y);
+      const auto cell = static_cast<std::uint64_t>((replaced.row - rows.begin) * (columns.size() - 1) +
+                                                   (replaced.column - columns.begin));
+      const std::uint64_t identity =
+          std::uint64_t{nodes[n].number} << 32 | cell << 1 | (replaced.top ? 1 : 0);
+      for (std::uint32_t f = 0; f < replaced.face_count; ++f) {
+        const auto& face = seam.faces[replaced.first_face + f];
+        addTriangle(triangles[n], counts[n], vertices[face[0]], vertices[face[1]], vertices[face[2]],
+                    identity);
+      }
+    }
+  }
 }
 
 Box boxOf(const Triangle& triangle, const ViewTransform& view) {
@@ -211,14 +300,21 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read = watch.lap();
 
+  const SeamIndex seams(database);
   std::vector<std::vector<Vertex>> vertices(nodes.size());
   std::vector<std::vector<Triangle>> triangles(nodes.size());
   std::vector<FrameStatistics::Triangles> of_node(nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
     const TerrainTile& tile = tiles[n]->value();
     vertices[n] = verticesOf(tile, database.grid(tile.grid), environment);
-    triangles[n] = trianglesOf(tile, vertices[n], nodes[n].number, of_node[n]);
+    triangles[n] = trianglesOf(tile, vertices[n], nodes[n].number, seams.replacedFaces(tile), of_node[n]);
   });
+  const AllPosts posts(database, nodes, vertices);
+  std::vector<std::vector<Vertex>> of_seams;
+  for (const Seam& seam : database.seams()) {
+    of_seams.push_back(seamVertices(seam, posts));
+    addSeamTriangles(seam, of_seams.back(), posts, database, nodes, triangles, of_node);
+  }
   statistics.milliseconds.objects = watch.lap();
 
   // Bands of rows do not touch each other's samples; each sees all triangles in the same order.

@@ -56,8 +56,8 @@ struct FrameStatistics {
   std::uint64_t bytes_read = 0;
   std::uint64_t posts_decoded = 0;
   int level = 0, coarsest_level = 0;  // of detail, drawn: the finest and the coarsest
-  double projected_error = 0;   // pixels, bound of what is drawn
-  double depth_complexity = 0;  // samples tested per covered pixel
+  double projected_error = 0;         // pixels, bound of what is drawn
+  double depth_complexity = 0;        // samples tested per covered pixel
   struct Milliseconds {
     double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;
   } milliseconds;

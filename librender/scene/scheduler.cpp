@@ -13,9 +13,14 @@ namespace {
 
 class Scheduler {
  public:
-  Scheduler(const Database& database, const ViewTransform& view, const ScheduleOptions& options,
-            FrameStatistics::Nodes& statistics)
-      : database_(database), view_(view), options_(options), statistics_(statistics), volume_(view) {}
+  Scheduler(const Database& database, const SeamIndex& seams, const ViewTransform& view,
+            const ScheduleOptions& options, FrameStatistics::Nodes& statistics)
+      : database_(database),
+        seams_(seams),
+        view_(view),
+        options_(options),
+        statistics_(statistics),
+        volume_(view) {}
 
   Result<Schedule> run() {
     DELTAZ_TRY_ASSIGN(const Node root, database_.root());
@@ -37,6 +42,8 @@ class Scheduler {
     const Node& node = candidate.node;
     if (node.record.type != NodeType::kTerrain) return false;
     if (node.record.level == 0) return true;
+    // In view or not: what is in view may stand on its posts.
+    if (seams_.stateOf(positionOf(node.record)) == SeamState::kTouched) return false;
     if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
     if (!candidate.in_view) return true;
     return options_.tolerance > 0 && ownError(node) <= options_.tolerance;
@@ -53,6 +60,7 @@ class Scheduler {
         if (child.record.isEmpty()) continue;
         const bool terrain = child.record.type == NodeType::kTerrain;
         if (!terrain && child.record.type != NodeType::kCluster) continue;
+        if (terrain && seams_.stateOf(positionOf(child.record)) == SeamState::kRemoved) continue;
         CutNode candidate{child, true};
         if (terrain && options_.cull && volume_.isOutside(child.centroid, child.radius())) {
           ++statistics_.out_of_view;
@@ -131,6 +139,7 @@ class Scheduler {
   }
 
   const Database& database_;
+  const SeamIndex& seams_;
   const ViewTransform& view_;
   const ScheduleOptions& options_;
   FrameStatistics::Nodes& statistics_;
@@ -155,9 +164,9 @@ double projectedErrorBound(const ViewTransform& view, const Vector3& centre, dou
   return view.pixels * error * std::sqrt(1 + tangent_squared) / depth;
 }
 
-Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view,
+Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics) {
-  return Scheduler(database, view, options, statistics).run();
+  return Scheduler(database, seams, view, options, statistics).run();
 }
 
 }  // namespace deltaz

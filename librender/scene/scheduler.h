@@ -16,13 +16,15 @@
 #include "libdb/access/database.h"
 #include "librender/scene/cut.h"
 #include "librender/scene/render.h"
+#include "librender/scene/seam_index.h"
 
 namespace deltaz {
 
 struct Schedule {
   int level = 0, coarsest_level = 0;  // of the nodes in view
   double projected_error = 0;         // pixels: the largest bound of what is drawn, strips included
-  // The cut, in the order of the record numbers. It covers all of the area that has heights.
+  // The cut, in the order of the record numbers. It covers all of the area that has heights, but for what
+  // lies under other grids.
   std::vector<CutNode> nodes;
 };
 
@@ -42,7 +44,8 @@ struct ScheduleOptions {
 double projectedErrorBound(const ViewTransform& view, const Vector3& centre, double radius, double error);
 
 // Counts visited, out_of_view and drawn nodes in `statistics`.
-Result<Schedule> scheduleNodes(const Database& database, const ViewTransform& view,
+// Nodes that `seams` touch are drawn at full resolution, whatever the tolerance.
+Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics);
 
 }  // namespace deltaz

@@ -44,7 +44,8 @@ TEST(Culling, removes_no_node_and_no_face_that_the_reference_shows) {
 
       const ViewTransform view = makeViewTransform(render.camera, EllipsoidShape{});
       FrameStatistics::Nodes counts;
-      const Schedule schedule = scheduleNodes(area.database, view, {0.0}, counts).value();
+      const Schedule schedule =
+          scheduleNodes(area.database, SeamIndex(area.database), view, {0.0}, counts).value();
       std::set<std::uint32_t> drawn;
       for (const CutNode& node : schedule.nodes) {
         if (node.in_view) drawn.insert(node.node.number);

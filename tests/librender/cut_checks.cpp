@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "libdb/build/grid_locator.h"
 #include "librender/scene/view_volume.h"
 #include "tests/librender/test_databases.h"
 
@@ -71,7 +72,8 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
     vertices[n].color.resize(vertices[n].position.size());
     processed[n] = {&*mesh.tiles[n], &vertices[n]};
   }
-  const BorderStitcher stitcher(database, mesh.cut, index, processed);
+  const SeamIndex seams(database);
+  const BorderStitcher stitcher(database, mesh.cut, index, seams, processed);
   for (std::uint32_t n = 0; n < mesh.cut.size(); ++n) {
     MeshNode node;
     node.cut_node = n;
@@ -83,15 +85,18 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
       plan.push_back({-1, static_cast<double>(post[0] - node.posts[0][0]),
                       static_cast<double>(post[1] - node.posts[0][1])});
     for (Vector3& p : plan) p.x = 1;
-    const TerrainFaces faces = terrainFaces(*mesh.tiles[n], plan, splits);
+    const std::vector<std::uint8_t> replaced = seams.replacedFaces(*mesh.tiles[n]);
+    const TerrainFaces faces = terrainFaces(*mesh.tiles[n], plan, splits, replaced);
     if (faces.back_facing == 0) {
       for (const TerrainFace& face : faces.front) node.faces.push_back(face.vertex);
     } else {
       // Turned the other way by convention: mirror and take them all.
       for (Vector3& p : plan) p.y = -p.y;
-      for (const TerrainFace& face : terrainFaces(*mesh.tiles[n], plan, splits).front)
+      for (const TerrainFace& face : terrainFaces(*mesh.tiles[n], plan, splits, replaced).front)
         node.faces.push_back(face.vertex);
     }
+    for (const TerrainFace& face : stitcher.seamFaces(n, node.vertices, &node.seam_vertices))
+      node.faces.push_back(face.vertex);
     mesh.nodes.push_back(std::move(node));
   }
   return mesh;
@@ -147,6 +152,79 @@ std::string findCrack(const Database& database, const CutMesh& mesh) {
     if (drawnAt(mesh, index, edge.grid, x, y))
       return fmt::format("nothing meets the edge {} {}, though something is drawn beyond it",
                          nameOf(edge.from), nameOf(edge.to));
+  }
+  return {};
+}
+
+std::string findSeamCrack(const Database& database, const CutMesh& mesh) {
+  const CutIndex index(database, mesh.cut);
+  // A vertex's name: a post of a grid, or a point of a seam; where it stands, and its place on the ellipsoid.
+  using Name = std::array<std::int64_t, 3>;
+  struct Vertex {
+    Name name{};
+    Vector3 position, foot;
+  };
+  const auto foot_of_post = [&](std::uint16_t grid, std::int64_t column, std::int64_t row) {
+    return database.grid(grid).placeAt(column, row).foot;
+  };
+  const auto vertex_of = [&](const MeshNode& node, std::uint32_t v) {
+    const std::uint16_t grid = mesh.cut[node.cut_node].node.record.grid;
+    if (v < node.posts.size()) {
+      const Post& post = node.posts[v];
+      return Vertex{
+          {grid, post[0], post[1]}, node.vertices.position[v], foot_of_post(grid, post[0], post[1])};
+    }
+    const BorderStitcher::SeamVertexName& name = node.seam_vertices[v - node.posts.size()];
+    const Seam& seam = database.seams()[name.seam];
+    const SeamVertex& vertex = seam.vertices[name.vertex];
+    const std::uint16_t of = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
+    const Vector3 p0 = foot_of_post(of, vertex.column, vertex.row);
+    if (vertex.weight1 == 0 && vertex.weight2 == 0)
+      return Vertex{{of, vertex.column, vertex.row}, node.vertices.position[v], p0};
+    const Vector3 p1 = foot_of_post(of, vertex.column + vertex.to_p1[0], vertex.row + vertex.to_p1[1]);
+    const Vector3 p2 = foot_of_post(of, vertex.column + vertex.to_p2[0], vertex.row + vertex.to_p2[1]);
+    return Vertex{{-1 - static_cast<std::int64_t>(name.seam), name.vertex, 0},
+                  node.vertices.position[v],
+                  p0 + (p1 - p0) * vertex.weight1 + (p2 - p0) * vertex.weight2};
+  };
+  std::map<Name, Vertex> vertices;
+  std::map<std::pair<Name, Name>, int> edges;
+  for (const MeshNode& node : mesh.nodes) {
+    for (const auto& face : node.faces) {
+      const std::array<Vertex, 3> corner = {vertex_of(node, face[0]), vertex_of(node, face[1]),
+                                            vertex_of(node, face[2])};
+      const Vector3 normal = cross(corner[1].foot - corner[0].foot, corner[2].foot - corner[0].foot);
+      // What is thinner than a hundredth of a millimetre may turn by rounding.
+      if (dot(normal, corner[0].foot) <
+          -1e-5 * length(corner[0].foot) * length(corner[1].foot - corner[0].foot))
+        return fmt::format("a face at ({}, {}) is turned over in plan", corner[0].name[1], corner[0].name[2]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex &a = corner[k], &b = corner[(k + 1) % 3];
+        if (a.name == b.name) return "a face has an edge of no length";
+        if (++edges[{a.name, b.name}] > 1) return "an edge is used twice in one direction";
+        const auto [found, fresh] = vertices.emplace(a.name, a);
+        if (!fresh && !sameBits(found->second.position, a.position))
+          return fmt::format("vertex {} {} {} stands at two places, {} m apart", a.name[0], a.name[1],
+                             a.name[2], length(found->second.position - a.position));
+      }
+    }
+  }
+  for (const auto& [edge, uses] : edges) {
+    if (edges.contains({edge.second, edge.first})) continue;
+    const Vector3 &a = vertices.at(edge.first).foot, &b = vertices.at(edge.second).foot;
+    const Vector3 middle = (a + b) * 0.5, right = normalized(cross(b - a, middle));
+    for (int grid = 0; grid < database.gridCount(); ++grid) {
+      const auto place = GridLocator(database.grid(grid)).locate(middle + right * 0.01);
+      if (!place ||
+          !drawnAt(mesh, index, static_cast<std::uint16_t>(grid),
+                   static_cast<double>(place->column) + place->x, static_cast<double>(place->row) + place->y))
+        continue;
+      return fmt::format(
+          "nothing meets the edge {} {} {} - {} {} {}, {:.3f} m long, though grid {} has ground "
+          "beyond it",
+          edge.first[0], edge.first[1], edge.first[2], edge.second[0], edge.second[1], edge.second[2],
+          length(b - a), grid);
+    }
   }
   return {};
 }

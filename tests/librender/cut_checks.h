@@ -20,6 +20,8 @@ struct MeshNode {
   TerrainVertices vertices;
   std::vector<std::array<std::int64_t, 2>> posts;  // level-0 index of each vertex
   std::vector<std::array<std::uint32_t, 3>> faces;
+  // Vertices of seams stand behind those of `posts`.
+  std::vector<BorderStitcher::SeamVertexName> seam_vertices;
 };
 
 // All nodes of a cut, in view or not, processed and stitched.
@@ -34,6 +36,10 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
 // identical vertices, every vertex of a post is the same wherever it is used, all faces turn the same way in
 // plan, and together they cover exactly what the valid faces of the cut's tiles cover.
 std::string findCrack(const Database& database, const CutMesh& mesh);
+
+// The same for areas with seams, where plan is what lies on the ellipsoid: every edge that has ground beyond
+// it, of whichever grid, is shared by exactly two faces with identical vertices, and no face is turned over.
+std::string findSeamCrack(const Database& database, const CutMesh& mesh);
 
 // Heights of a whole grid at full resolution.
 class FullResolution {

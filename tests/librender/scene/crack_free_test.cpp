@@ -49,7 +49,7 @@ Outcome tryViews(const Database& database, int views, bool measure_contract, Sch
     const Camera camera = randomView(database, random, 256, 192);
     const ViewTransform view = makeViewTransform(camera, database.area().grids.front().ellipsoid);
     FrameStatistics::Nodes counts;
-    const Result<Schedule> schedule = scheduleNodes(database, view, options, counts);
+    const Result<Schedule> schedule = scheduleNodes(database, SeamIndex(database), view, options, counts);
     if (!schedule.ok()) throw std::runtime_error(schedule.error().message());
     EXPECT_TRUE(!options.test_strips || options.tolerance == 0 ||
                 schedule.value().projected_error <= options.tolerance);
@@ -164,7 +164,8 @@ TEST(CrackFree, strips_break_the_contract_unless_they_are_tested) {
     ScheduleOptions options;
     options.test_strips = tested;
     FrameStatistics::Nodes counts;
-    const Schedule schedule = scheduleNodes(memory.database, view, options, counts).value();
+    const Schedule schedule =
+        scheduleNodes(memory.database, SeamIndex(memory.database), view, options, counts).value();
     const CutMesh mesh = meshOfCut(memory.database, schedule, view);
     EXPECT_EQ(findCrack(memory.database, mesh), "");
     findings[tested ? 1 : 0] = measureContract(memory.database, mesh, full, view);
@@ -182,7 +183,8 @@ TEST(CrackFree, a_vertex_out_of_place_and_a_missing_face_are_found) {
   const Camera camera = cameraOver(memory.database, 0.2, 0.2, 400, 45, -10, 256, 192);
   const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Schedule schedule = scheduleNodes(memory.database, view, {}, counts).value();
+  const Schedule schedule =
+      scheduleNodes(memory.database, SeamIndex(memory.database), view, {}, counts).value();
   const CutMesh mesh = meshOfCut(memory.database, schedule, view);
   ASSERT_EQ(findCrack(memory.database, mesh), "");
   CutMesh moved = mesh;
@@ -202,7 +204,8 @@ TEST(CrackFree, levels_side_by_side_without_stitching_are_found) {
   const Camera camera = cameraOver(memory.database, 0.2, 0.2, 400, 45, -10, 256, 192);
   const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Schedule schedule = scheduleNodes(memory.database, view, {}, counts).value();
+  const Schedule schedule =
+      scheduleNodes(memory.database, SeamIndex(memory.database), view, {}, counts).value();
   ASSERT_GT(levelDifference(memory.database, schedule.nodes), 0);
   CutMesh mesh = meshOfCut(memory.database, schedule, view);
   for (MeshNode& node : mesh.nodes) {

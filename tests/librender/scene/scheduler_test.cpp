@@ -44,7 +44,8 @@ TEST(Scheduler, cuts_the_area_once_and_keeps_every_node_in_view_within_the_toler
     const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
     for (const double tolerance : {0.1, 1.0, 4.0, 1000.0}) {
       FrameStatistics::Nodes counts;
-      const Result<Schedule> schedule = scheduleNodes(area.database, view, {tolerance}, counts);
+      const Result<Schedule> schedule =
+          scheduleNodes(area.database, SeamIndex(area.database), view, {tolerance}, counts);
       ASSERT_TRUE(schedule.ok());
       EXPECT_LE(schedule.value().projected_error, tolerance);
       EXPECT_EQ(counts.drawn, drawnNodes(schedule.value()).size());
@@ -69,7 +70,8 @@ TEST(Scheduler, uses_coarser_nodes_farther_away) {
   const ViewTransform view =
       makeViewTransform(cameraOver(area.database, 0.5, 0.05, 30, 0, -3, 640, 400), EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Schedule schedule = scheduleNodes(area.database, view, {4.0}, counts).value();
+  const Schedule schedule =
+      scheduleNodes(area.database, SeamIndex(area.database), view, {4.0}, counts).value();
   EXPECT_EQ(schedule.level, 0);
   EXPECT_GT(schedule.coarsest_level, 0);
 }
@@ -79,7 +81,8 @@ TEST(Scheduler, zero_tolerance_is_full_resolution_and_order_is_that_of_records) 
   const ViewTransform view =
       makeViewTransform(wholeAreaCamera(area.database.area(), 320, 200, 60), EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Result<Schedule> schedule = scheduleNodes(area.database, view, {0.0}, counts);
+  const Result<Schedule> schedule =
+      scheduleNodes(area.database, SeamIndex(area.database), view, {0.0}, counts);
   ASSERT_TRUE(schedule.ok());
   EXPECT_EQ(schedule.value().coarsest_level, 0);
   const std::vector<CutNode>& nodes = schedule.value().nodes;
@@ -95,7 +98,8 @@ TEST(Scheduler, an_eye_inside_a_node_sees_it_at_full_resolution) {
     const ViewTransform view =
         makeViewTransform(cameraOver(area.database, 0.43, 0.61, above, 30, -5, 320, 200), EllipsoidShape{});
     FrameStatistics::Nodes counts;
-    const Schedule schedule = scheduleNodes(area.database, view, {1.0}, counts).value();
+    const Schedule schedule =
+        scheduleNodes(area.database, SeamIndex(area.database), view, {1.0}, counts).value();
     for (const CutNode& node : schedule.nodes) {
       if (!node.in_view || length(node.node.centroid - view.eye) > node.node.radius()) continue;
       EXPECT_EQ(node.node.record.level, 0);
@@ -108,7 +112,8 @@ TEST(Scheduler, does_not_visit_what_is_out_of_view) {
   const ViewTransform away =
       makeViewTransform(cameraOver(area.database, 0.5, -2, 100, 180, 0, 320, 200), EllipsoidShape{});
   FrameStatistics::Nodes counts;
-  const Result<Schedule> schedule = scheduleNodes(area.database, away, {0.0}, counts);
+  const Result<Schedule> schedule =
+      scheduleNodes(area.database, SeamIndex(area.database), away, {0.0}, counts);
   ASSERT_TRUE(schedule.ok());
   EXPECT_EQ(counts.drawn, 0u);
   EXPECT_LT(counts.visited, 6u);
