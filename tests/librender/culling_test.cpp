@@ -31,7 +31,7 @@ TEST(Culling, removes_no_node_and_no_face_that_the_reference_shows) {
     const MemoryDatabase area = makeDatabase(options, 16);
     std::mt19937 random(11);
     std::uint64_t out_of_view = 0, back_facing = 0, shown = 0;
-    for (int n = 0; n < viewsPerArea(25); ++n) {
+    for (int n = 0; n < viewsPerArea(12); ++n) {
       RenderOptions render;
       render.camera = randomView(area.database, random, 160, 120);
       render.tolerance = 0;
@@ -91,7 +91,7 @@ TEST(LevelsOfDetail, show_no_sea_or_sky_through_the_ground) {
   for (const SyntheticGridOptions& options : areas()) {
     const MemoryDatabase area = makeDatabase(options, 8);
     std::mt19937 random(5);
-    for (int n = 0; n < viewsPerArea(25); ++n) {
+    for (int n = 0; n < viewsPerArea(12); ++n) {
       RenderOptions render;
       render.camera = randomView(area.database, random, 240, 180);
       FrameStatistics statistics, reference_statistics;
@@ -103,7 +103,7 @@ TEST(LevelsOfDetail, show_no_sea_or_sky_through_the_ground) {
           << render.camera.eye.height << " look " << render.camera.heading << "," << render.camera.pitch;
     }
   }
-  EXPECT_GT(coarse, 10);
+  EXPECT_GT(coarse, 3);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST(Seams, no_view_has_a_crack_between_two_grids) {
     std::printf("%s: %zu vertices, %zu faces, %zu runs, error %.2f m\n", area.name, seam.vertices.size(),
                 seam.faces.size(), seam.runs.size(), seam.error);
     std::mt19937 random(3);
-    for (int n = 0; n < 12; ++n) {
+    for (int n = 0; n < 5; ++n) {
       const Camera camera = randomView(memory.database, random, 256, 192);
       const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
       FrameStatistics::Nodes counts;
@@ -132,7 +132,7 @@ TEST(Seams, engines_agree_and_nothing_shows_through) {
     const MemoryDatabase memory = build(area.grids, 16);
     std::mt19937 random(17);
     int differing = 0, pixels = 0;
-    for (int n = 0; n < 4; ++n) {
+    for (int n = 0; n < 2; ++n) {
       RenderOptions options;
       options.camera = randomView(memory.database, random, 200, 150);
       options.tolerance = 0;

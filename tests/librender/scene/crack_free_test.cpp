@@ -115,7 +115,7 @@ std::vector<SyntheticCase> syntheticCases() {
 TEST(CrackFree, no_view_of_a_synthetic_area_has_a_crack) {
   for (const SyntheticCase& area : syntheticCases()) {
     const MemoryDatabase memory = makeDatabase(area.options, area.leaf_cells);
-    const Outcome outcome = tryViews(memory.database, viewsPerArea(60), true);
+    const Outcome outcome = tryViews(memory.database, viewsPerArea(20), true);
     print(area.name, outcome);
     EXPECT_EQ(outcome.crack, "") << area.name;
     EXPECT_LE(outcome.worst_pixels, 1) << area.name;
@@ -229,7 +229,7 @@ TEST(CrackFree, no_view_of_a_real_area_has_a_crack) {
   for (const std::string& file : files) {
     const std::optional<MemoryDatabase> area = databaseOfFile(file);
     if (!area) continue;
-    const Outcome outcome = tryViews(area->database, viewsPerArea(4), true);
+    const Outcome outcome = tryViews(area->database, viewsPerArea(2), true);
     print(file.c_str(), outcome);
     EXPECT_EQ(outcome.crack, "") << file;
     EXPECT_LE(outcome.worst_pixels, 1) << file;
