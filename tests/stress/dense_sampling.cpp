@@ -65,6 +65,27 @@ class Surface {
   std::int64_t step_;
 };
 
+Place placeOf(const GridGeometry& geometry, double column, double row) {
+  const GridHeader& header = geometry.header();
+  GeodeticPoint point;
+  if (geometry.isGeodetic()) {
+    point.longitude = kLongitudeOrigin.coordinate + (column + header.x_axis.phase) * header.x_axis.spacing;
+    point.latitude = kLatitudeOrigin.coordinate + (row + header.y_axis.phase) * header.y_axis.spacing;
+  } else {
+    // Somewhere in that cell is enough: what counts is the line, not which indices led to it.
+    const auto i = static_cast<std::int64_t>(std::floor(column)),
+               j = static_cast<std::int64_t>(std::floor(row));
+    const double x = column - static_cast<double>(i), y = row - static_cast<double>(j);
+    const auto foot = [&](std::int64_t di, std::int64_t dj) { return geometry.placeAt(i + di, j + dj).foot; };
+    point = toGeodetic(header.ellipsoid, (foot(0, 0) * (1 - x) + foot(1, 0) * x) * (1 - y) +
+                                             (foot(0, 1) * (1 - x) + foot(1, 1) * x) * y);
+  }
+  const RowConstants row_constants = rowConstants(header.ellipsoid, point.latitude);
+  const ColumnConstants column_constants = columnConstants(point.longitude);
+  return {column, row, earthCentred(row_constants, column_constants, 0),
+          upVector(row_constants, column_constants)};
+}
+
 }  // namespace
 
 DenseSampling sampleErrors(const Database& database, const RawGrid& grid, int count) {
@@ -90,17 +111,7 @@ DenseSampling sampleErrors(const Database& database, const RawGrid& grid, int co
     const double span =
         static_cast<double>(header.leaf_cells) * static_cast<double>(std::int64_t{1} << level);
     for (int sample = 0; sample < count; ++sample) {
-      Place place;
-      place.column = between(header.x_axis);
-      place.row = between(header.y_axis);
-      const double longitude =
-          kLongitudeOrigin.coordinate + (place.column + header.x_axis.phase) * header.x_axis.spacing;
-      const double latitude =
-          kLatitudeOrigin.coordinate + (place.row + header.y_axis.phase) * header.y_axis.spacing;
-      const RowConstants row = rowConstants(header.ellipsoid, latitude);
-      const ColumnConstants column = columnConstants(longitude);
-      place.foot = earthCentred(row, column, 0);
-      place.up = upVector(row, column);
+      const Place place = placeOf(geometry, between(header.x_axis), between(header.y_axis));
       const auto node = stored.find({static_cast<std::int64_t>(std::floor(place.column / span)),
                                      static_cast<std::int64_t>(std::floor(place.row / span))});
       if (node == stored.end() || !(node->second < std::numeric_limits<double>::infinity())) continue;

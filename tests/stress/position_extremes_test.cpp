@@ -65,7 +65,7 @@ void checkContract(const std::string& name, const TerrainTile& tile, const GridG
 
 TEST(PositionExtremes, every_extreme_grid_from_every_height) {
   for (const NamedGrid& named : extremeGrids()) {
-    const GridGeometry geometry(named.grid.header);
+    const GridGeometry geometry(named.grid.header, named.grid.patches);
     const TerrainTile tile = wholeTile(named.grid);
     const std::vector<LongVector> truth = truePositions(tile, geometry);
     for (const double above : kEyeHeights) {
@@ -111,19 +111,6 @@ TEST(PositionExtremes, heights_at_the_limit_of_the_format) {
   const std::vector<LongVector> truth = truePositions(tile, geometry);
   checkBounds("heights of 2^30 quanta", tile, geometry, view, truth);
   checkContract("heights of 2^30 quanta", tile, geometry, view, truth);
-}
-
-TEST(PositionExtremes, projected_grids) {
-  const RawGrid grid = projectedGrid(200, 200, 30);
-  const GridGeometry geometry(grid.header, grid.patches);
-  const TerrainTile tile = wholeTile(grid);
-  const std::vector<LongVector> truth = truePositions(tile, geometry);
-  for (const double above : kEyeHeights) {
-    Camera camera = cameraAbove(tile, geometry, above, -10);
-    camera.eye.height = geometry.metres(tile.height(100, 100)) + above;
-    const ViewTransform view = makeViewTransform(camera, grid.header.ellipsoid);
-    checkBounds("projected " + std::to_string(above) + " m", tile, geometry, view, truth);
-  }
 }
 
 // GeographicLib is what users compare with; the truth of these tests must be its truth.

@@ -80,9 +80,9 @@ double groundError(const Database& database, const RawGrid& grid) {
   for (std::int64_t row = 0; row < rows; row += std::max<std::int64_t>(1, rows / 10)) {
     for (std::int64_t column = 0; column < columns; column += std::max<std::int64_t>(1, columns / 10)) {
       if (!grid.isValid(column, row)) continue;
-      const Result<std::optional<double>> ground =
-          groundHeight(database, geometry.latitude(grid.header.y_axis.first + row),
-                       geometry.longitude(grid.header.x_axis.first + column));
+      const GeodeticPoint place =
+          geometry.geodeticAt(grid.header.x_axis.first + column, grid.header.y_axis.first + row);
+      const Result<std::optional<double>> ground = groundHeight(database, place.latitude, place.longitude);
       if (!ground.ok()) return std::numeric_limits<double>::infinity();
       // Beside voids a post may have no facet, and so no ground.
       if (ground.value())

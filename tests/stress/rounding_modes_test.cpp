@@ -87,7 +87,7 @@ std::vector<NamedGrid> someGrids() {
   std::vector<NamedGrid> grids = {hills()};
   for (NamedGrid& named : extremeGrids()) {
     if (named.name == "north_pole" || named.name == "beside_the_north_pole" || named.name == "antimeridian" ||
-        named.name == "least_spacing" || named.name == "scattered_voids")
+        named.name == "least_spacing" || named.name == "scattered_voids" || named.name == "projected")
       grids.push_back(std::move(named));
   }
   return grids;
@@ -115,7 +115,7 @@ TEST_P(RoundingModes, positions_keep_their_bounds_and_the_contract) {
     if (named.grid.heights.size() <= 4000) grids.push_back(std::move(named));
   }
   for (const NamedGrid& named : grids) {
-    const GridGeometry geometry(named.grid.header);
+    const GridGeometry geometry(named.grid.header, named.grid.patches);
     const TerrainTile tile = wholeTile(named.grid);
     const std::vector<LongVector> truth = truePositions(tile, geometry);
     for (const double above : {2.0, 1e5, 1e7}) {
@@ -196,7 +196,7 @@ TEST_P(RoundingModes, errors_and_spheres_are_never_too_small) {
   for (const NamedGrid& named : someGrids()) {
     GridHeader header = named.grid.header;
     header.leaf_cells = named.leaf_cells;
-    const GridGeometry geometry(header);
+    const GridGeometry geometry(header, named.grid.patches);
     const PyramidPlan plan = planPyramid(geometry);
     const Measured there = measure(named.grid, geometry, plan, GetParam());
     const Measured usual = measure(named.grid, geometry, plan, Mode{});

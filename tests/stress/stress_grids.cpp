@@ -91,6 +91,7 @@ std::vector<NamedGrid> extremeGrids() {
   setPlainAxis(closest.grid.header.y_axis, kLatitudeOrigin, 46, kLeastSpacingDegrees, 300);
   grids.push_back(std::move(closest));
 
+  grids.push_back({"projected", projectedGrid(140, 100, 30), 16});
   grids.push_back(on("sphere_of_one_metre", {1, 0}, 1000, {1, 1000000}));
   grids.push_back(on("the_largest_ellipsoid", {1e8, 20}, 20000, {1, 1}));
   grids.push_back(on("very_flat_ellipsoid", {6378137, 1.5}, 2000, {1, 1}));
