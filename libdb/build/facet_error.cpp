@@ -79,7 +79,6 @@ struct Pierce {
   double inside = -std::numeric_limits<double>::infinity();  // smallest barycentric coordinate; >= 0 inside
   int nearest_vertex_across = 0;                             // whose barycentric coordinate it is
   bool valid = false;
-  bool degenerate = false;  // the facet is there but has no extent, as at a pole, where a row is one point
 };
 
 // Where the line foot + t * up meets the facet's plane (Moeller and Trumbore 1997).
@@ -95,10 +94,7 @@ Pierce pierce(const CoarseWindow& window, const Facet& facet, const Vector3& foo
   const Vector3 e2 = v2 - v0;
   const Vector3 p = cross(up, e2);
   const double determinant = dot(e1, p);
-  if (std::abs(determinant) <= kDegenerate * length(e1) * length(e2)) {
-    result.degenerate = true;
-    return result;
-  }
+  if (std::abs(determinant) <= kDegenerate * length(e1) * length(e2)) return result;
   const Vector3 s = foot - v0;
   const Vector3 q = cross(s, e1);
   const double b1 = dot(s, p) / determinant;
@@ -135,32 +131,39 @@ int planFacets(std::int64_t column, std::int64_t row, std::int64_t step, std::ar
   return 1;
 }
 
-// Where the coarse surface lies over a post; invalid if none is there.
+// Where the coarse surface lies over a post; invalid if none is drawn there in plan.
 Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int64_t row, std::int64_t step,
                        const Vector3& foot, const Vector3& up) {
   std::array<Facet, 2> candidates;
   const int count = planFacets(column, row, step, candidates);
-  Pierce best = pierce(window, candidates[0], foot, up);
+  Pierce best;
   Facet facet = candidates[0];
-  if (count == 2) {
-    const Pierce other = pierce(window, candidates[1], foot, up);
-    if (other.inside > best.inside) {
-      best = other;
-      facet = candidates[1];
-    }
+  bool drawn = false;
+  const auto consider = [&](const Facet& candidate) {
+    const Pierce hit = pierce(window, candidate, foot, up);
+    if (!hit.valid || hit.inside <= best.inside) return false;
+    best = hit;
+    facet = candidate;
+    return true;
+  };
+  for (int i = 0; i < count; ++i) {
+    drawn = drawn || candidates[static_cast<std::size_t>(i)].isValid(window);
+    consider(candidates[static_cast<std::size_t>(i)]);
   }
-  // Beside a pole the cell's other facet reaches over the whole cell.
-  if (!best.valid && best.degenerate) {
-    facet = {candidates[0].I, candidates[0].J, !candidates[0].top};
-    best = pierce(window, facet, foot, up);
-  }
+  if (!drawn) return {};
   // The edges of facets bow in plan, so the facet that is met may be the next one.
   for (int steps = 0; best.valid && best.inside < -kInsideTolerance && steps < 4; ++steps) {
-    const Facet next_facet = facet.across(best.nearest_vertex_across);
-    const Pierce next = pierce(window, next_facet, foot, up);
-    if (!next.valid || next.inside <= best.inside) break;
-    best = next;
-    facet = next_facet;
+    if (!consider(facet.across(best.nearest_vertex_across))) break;
+  }
+  if (best.valid && best.inside >= -kInsideTolerance) return best;
+  // Beside a pole, where a row is one point, facets stand upright or have no extent, and across an edge lies
+  // nothing to go by.
+  const std::int64_t I = candidates[0].I, J = candidates[0].J;
+  for (std::int64_t j = J - 1; j <= J + 1; ++j) {
+    for (std::int64_t i = I - 1; i <= I + 1; ++i) {
+      consider({i, j, false});
+      consider({i, j, true});
+    }
   }
   return best;
 }

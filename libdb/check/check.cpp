@@ -17,6 +17,7 @@ void runRules(CheckContext& context) {
   checkTree(context);
   if (context.options.level >= CheckLevel::kChecksum) checkChecksums(context);
   if (context.options.level >= CheckLevel::kDecode) checkTerrain(context);
+  if (context.options.level >= CheckLevel::kGeometry) checkGeometry(context);
   if (context.options.against != nullptr) checkAgainstSource(context);
 }
 

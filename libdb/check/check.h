@@ -3,7 +3,11 @@
 // Levels, each including the ones before it:
 //   structure  area.json, file lengths and identities, headers, footers, block index, the tree of node
 //   records checksum   every block against its checksum, file identities against contents, padding decode
-//   every node's terrain: it decodes, agrees with its record, its parent's posts and its neighbours' ring
+//   every node's terrain: it decodes, agrees with its record, its parent's posts and its
+//              neighbours' ring
+//   geometry   what the database says of its own accuracy, recomputed in other ways than the builder's:
+//              geometric, RMS and coverage errors, normal cones and normals, control points, LOD ranges.
+//              Needs the full-resolution posts in memory, five bytes a post of a grid
 // `against` adds a comparison with the source, post for post.
 //
 // A damaged database never makes a check crash or stop early without saying so (Report::complete).
@@ -22,7 +26,8 @@
 
 namespace deltaz {
 
-enum class CheckLevel : std::uint8_t { kStructure, kChecksum, kDecode };
+enum class CheckLevel : std::uint8_t { kStructure, kChecksum, kDecode, kGeometry };
+inline constexpr CheckLevel kDeepestLevel = CheckLevel::kGeometry;
 enum class Severity : std::uint8_t { kInformation, kWarning, kError };
 
 // Where an issue is. Members that do not apply are empty.
@@ -62,6 +67,9 @@ struct CheckOptions {
   std::size_t against_count = 1;
   std::string against_name;  // for messages
   int threads = 0;
+  // Leaves whose errors level "geometry" recomputes post by post, percent of all, 0 to 100; always the same
+  // ones. The others' own statements are taken for true.
+  double sample_percent = 100;
 };
 
 struct Report {
@@ -69,6 +77,7 @@ struct Report {
   bool complete = true;              // every check of the level ran to its end
   std::vector<std::string> skipped;  // what did not run, and why
   std::uint64_t nodes_checked = 0, blocks_checked = 0, bytes_checked = 0, posts_compared = 0;
+  std::uint64_t leaves_measured = 0;  // whose errors were recomputed
   // Set when the database could not be opened or read, is newer than this version, or the check itself
   // failed. The issue stands in groups too, except for the check's own failure (kInternal), which is no
   // property of the database.

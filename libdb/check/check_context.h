@@ -74,6 +74,7 @@ void checkFolder(CheckContext& context);
 void checkTree(CheckContext& context);
 void checkChecksums(CheckContext& context);
 void checkTerrain(CheckContext& context);
+void checkGeometry(CheckContext& context);
 void checkAgainstSource(CheckContext& context);
 
 }  // namespace deltaz

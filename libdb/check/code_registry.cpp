@@ -165,11 +165,11 @@ constexpr std::array kRegistry = {
         "The mean normal of a node is not the mean of its own facets, weighted with their areas; or "
         "a vertex normal on the border of two nodes differs between them, and the seam shows.",
         kRebuild, "node_file.md 2"},
-    CodeDescription{
-        IssueCode::kTileLod, kError, kGeometry, "LOD ranges are no ranges",
-        "The distances between which a node is drawn must be numbers, not negative, the nearer one "
-        "first.",
-        kRebuild, "node_file.md 2"},
+    CodeDescription{IssueCode::kTileLod, kError, kGeometry,
+                    "LOD ranges of a node and its parent contradict each other",
+                    "Where both have ranges of distance in which they are drawn, the finer node's must begin "
+                    "and end no farther away than its parent's, or near ground is drawn coarser than far.",
+                    kRebuild, "node_file.md 2"},
     CodeDescription{
         IssueCode::kHgtDecode, kError, kDecode, "a node's terrain cannot be decoded",
         "The block is intact but its contents break the rules of the delta-z array or of its packing.",

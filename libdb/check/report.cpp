@@ -91,6 +91,7 @@ void mergeReport(Report& into, Report part) {
   into.blocks_checked += part.blocks_checked;
   into.bytes_checked += part.bytes_checked;
   into.posts_compared += part.posts_compared;
+  into.leaves_measured += part.leaves_measured;
   if (!into.fatal) into.fatal = std::move(part.fatal);
 }
 

@@ -65,6 +65,7 @@ Json jsonReport(const Report& report, const CheckRequest& request, const Judgeme
   json["area"] = baseName(request.area);
   json["against"] = request.against ? Json(baseName(*request.against)) : Json(nullptr);
   json["level"] = levelName(request.level);
+  json["sample_percent"] = request.sample_percent;
   json["fail_on"] = severityName(request.fail_on);
   json["verdict"] = verdictName(judgement.verdict);
   json["exit_code"] = judgement.exit_code;
@@ -76,7 +77,8 @@ Json jsonReport(const Report& report, const CheckRequest& request, const Judgeme
   json["checked"] = {{"nodes", report.nodes_checked},
                      {"blocks", report.blocks_checked},
                      {"bytes", report.bytes_checked},
-                     {"posts_compared", report.posts_compared}};
+                     {"posts_compared", report.posts_compared},
+                     {"leaves_measured", report.leaves_measured}};
   json["issues"] = Json::array();
   for (const IssueGroup& group : report.groups) json["issues"].push_back(groupJson(group));
   json["error"] = nullptr;

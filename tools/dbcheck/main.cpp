@@ -22,6 +22,7 @@ struct Options {
   CommonOptions common;
   std::string area;
   std::string level = "decode";
+  double sample = 100;
   std::vector<std::string> against;
   std::string crs;
   std::vector<std::string> reports;
@@ -33,9 +34,14 @@ struct Options {
 void addOptions(CLI::App& app, Options& options) {
   addPathOption(app, "AREA.dz", options.area, "The database");
   app.add_option("--level", options.level,
-                 "How deep to look, each level with those before it: structure, checksum, decode; all is "
-                 "every level this version has (default: decode)")
+                 "How deep to look, each level with those before it: structure, checksum, decode, geometry; "
+                 "all is every level this version has (default: decode)")
       ->type_name("LEVEL");
+  app.add_option("--sample", options.sample,
+                 "At level geometry recompute the errors of this part of the leaves only, always the same "
+                 "ones; the report says how many (default: 100)")
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("PERCENT");
   app.add_option("--against", options.against,
                  "The DEMs the database was built from: compare post for post, read as the database says it "
                  "read them")
@@ -85,9 +91,12 @@ Result<CheckRequest> makeRequest(const Options& options) {
   const std::optional<CheckLevel> level = levelFromName(options.level);
   if (!level) {
     return usageError("--level", fmt::format("'{}' is not a level of this version", options.level), {},
-                      "There are structure, checksum, decode and all");
+                      "There are structure, checksum, decode, geometry and all");
   }
   request.level = *level;
+  request.sample_percent = options.sample;
+  if (options.sample < 100 && *level < CheckLevel::kGeometry)
+    return usageError("--sample", "it means nothing below --level geometry");
   request.fail_on = options.fail_on == "warning" ? Severity::kWarning : Severity::kError;
   for (const std::string& path : options.against)
     request.against = request.against ? *request.against + ", " + path : path;
@@ -116,6 +125,7 @@ Result<int> check(const Options& options) {
   DELTAZ_TRY_ASSIGN(const std::vector<std::string> report_paths, reportPaths(options));
   CheckOptions check_options;
   check_options.level = request.level;
+  check_options.sample_percent = request.sample_percent;
   DELTAZ_TRY_ASSIGN(check_options.threads, options.common.threads());
 
   Report report;

@@ -76,6 +76,14 @@ std::string textReport(const Report& report, const CheckRequest& request, const 
   text += fmt::format("  level {}: {}, {}, {} checked\n", levelName(request.level),
                       plural(report.nodes_checked, "node"), plural(report.blocks_checked, "block"),
                       plural(report.bytes_checked, "byte"));
+  if (request.level >= CheckLevel::kGeometry) {
+    const std::string sample =
+        request.sample_percent < 100 ? fmt::format(" (--sample {})", request.sample_percent) : "";
+    text += fmt::format("  errors recomputed over {}{}\n",
+                        report.leaves_measured == 1 ? std::string("1 leaf")
+                                                    : fmt::format("{} leaves", report.leaves_measured),
+                        sample);
+  }
   if (request.against) {
     text +=
         fmt::format("  against {}: {} compared\n", *request.against, plural(report.posts_compared, "post"));

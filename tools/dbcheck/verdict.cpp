@@ -48,13 +48,16 @@ const char* levelName(CheckLevel level) {
       return "checksum";
     case CheckLevel::kDecode:
       return "decode";
+    case CheckLevel::kGeometry:
+      return "geometry";
   }
   return "decode";
 }
 
 std::optional<CheckLevel> levelFromName(const std::string& name) {
-  if (name == "all") return CheckLevel::kDecode;
-  for (const CheckLevel level : {CheckLevel::kStructure, CheckLevel::kChecksum, CheckLevel::kDecode}) {
+  if (name == "all") return kDeepestLevel;
+  for (const CheckLevel level :
+       {CheckLevel::kStructure, CheckLevel::kChecksum, CheckLevel::kDecode, CheckLevel::kGeometry}) {
     if (name == levelName(level)) return level;
   }
   return std::nullopt;

@@ -23,7 +23,8 @@ Judgement judge(const Report& report, Severity fail_on);
 const char* verdictName(Verdict verdict);
 const char* severityName(Severity severity);
 const char* levelName(CheckLevel level);
-// "structure", "checksum", "decode", and "all" for every level there is; nothing for another word.
+// "structure", "checksum", "decode", "geometry", and "all" for every level there is; nothing for another
+// word.
 std::optional<CheckLevel> levelFromName(const std::string& name);
 
 // What was asked for, and of what: the heading of both forms of the report.
@@ -32,6 +33,7 @@ struct CheckRequest {
   std::optional<std::string> against;
   CheckLevel level = CheckLevel::kDecode;
   Severity fail_on = Severity::kError;
+  double sample_percent = 100;  // of leaves whose errors are recomputed
 };
 
 }  // namespace deltaz

@@ -46,9 +46,10 @@ TEST(Verdict, what_cannot_be_opened_ends_with_its_own_code) {
 }
 
 TEST(Verdict, levels_have_names) {
-  EXPECT_EQ(levelFromName("all"), CheckLevel::kDecode);
+  EXPECT_EQ(levelFromName("all"), CheckLevel::kGeometry);
   EXPECT_EQ(levelFromName("structure"), CheckLevel::kStructure);
-  EXPECT_EQ(levelFromName("geometry"), std::nullopt);
+  EXPECT_EQ(levelFromName("geometry"), CheckLevel::kGeometry);
+  EXPECT_EQ(levelFromName("depth"), std::nullopt);
 }
 
 }  // namespace

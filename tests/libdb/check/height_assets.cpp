@@ -1,0 +1,111 @@
+// Terrain that contradicts itself, its neighbours or its grid.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "formats/patch_lattice.h"
+#include "tests/libdb/check/code_assets.h"
+#include "tests/support/projected_grid.h"
+
+namespace deltaz {
+
+namespace {
+
+const std::string kPath = kMemoryDatabasePath;
+
+std::size_t postIndex(const TerrainBlock& block, int column, int row) {
+  return static_cast<std::size_t>(row + 1) * (block.columns + 2u) + static_cast<std::size_t>(column + 1);
+}
+
+// Changes the height of one post by one quantum towards the middle of the node's range, so that the range
+// stays.
+void nudge(DatabaseEditor& editor, std::uint32_t number, int column, int row) {
+  TerrainBlock block = editor.block(number);
+  const NodeRecord& node = editor.record(number);
+  std::int32_t& height = block.heights.at(postIndex(block, column, row));
+  ASSERT_NE(height, node.minimum_height);
+  ASSERT_NE(height, node.maximum_height);
+  height += height * 2 < node.minimum_height + node.maximum_height ? 1 : -1;
+  editor.setBlock(number, block);
+}
+
+// A small projected database whose rows of control points are changed.
+Recipe withControls(const std::function<void(std::vector<std::vector<std::byte>>&)>& change,
+                    CheckLevel level) {
+  return [change, level](const MemoryFileSystem&) {
+    MemoryFileSystem files =
+        buildInMemory(projectedGrid({.columns = 41, .rows = 37, .patch_cells = 16}), smallLeaves());
+    const std::string area_path = kPath + "/" + std::string(kAreaFileName);
+    AreaHeader area = parseArea(files.text(area_path), area_path).value();
+    for (FileReference& file : area.files) {
+      if (file.role != FileRole::kPatches) continue;
+      const std::string path = kPath + "/" + file.name;
+      std::vector<std::vector<std::byte>> rows;
+      for (std::uint32_t row = 0; row < blockCount(files.bytes(path)); ++row)
+        rows.push_back(payloadOf(files.bytes(path), row));
+      change(rows);
+      files.setBytes(path, makeContainer(ContentKind::kPatches, BlockType::kPatchRow, rows));
+      const FileIdentity identity = identityOf(files.bytes(path));
+      file.length = identity.length;
+      file.id = identity.id;
+    }
+    files.setText(area_path, serializeArea(area));
+    return checkedAt(files, level);
+  };
+}
+
+// Moves the third point of the third row: along the meridian, which is in the surface, or along the Earth's
+// axis, which is not.
+void moveControl(std::vector<std::vector<std::byte>>& rows, double metres, bool along_axis) {
+  const auto points = static_cast<std::int64_t>(rows[2].size() / 24);
+  std::vector<double> row = decodePatchRow(rows[2], points, "row").value();
+  const double x = row[6], y = row[7], z = row[8], across = std::hypot(x, y), size = std::hypot(across, z);
+  row[6] -= along_axis ? 0 : metres * z / size * x / across;
+  row[7] -= along_axis ? 0 : metres * z / size * y / across;
+  row[8] += along_axis ? metres : metres * across / size;
+  rows[2] = encodePatchRow(row);
+}
+
+}  // namespace
+
+std::vector<Asset> heightAssets() {
+  return {
+      {IssueCode::kHgtDecode, byEditing([](DatabaseEditor& editor) {
+         // The count of ancestors no longer adds up with the block's length.
+         editor.payloads.at(editor.record(innerLeaf(editor)).block).at(3) ^= std::byte{1};
+       }),
+       byEditing(changeAncestorErrors)},
+      // An odd post in the middle of a coarse node: no coarser node has it, no neighbour sees it.
+      {IssueCode::kHgtSubset,
+       byEditing([](DatabaseEditor& editor) { nudge(editor, innerCoarseNode(editor), 3, 5); }), untouched()},
+      // A ring post one step outside the western border.
+      {IssueCode::kHgtRing,
+       byEditing([](DatabaseEditor& editor) { nudge(editor, innerLeaf(editor), -1, 4); }),
+       // What stands at a void post means nothing: here in a ring outside the area.
+       byEditing([](DatabaseEditor& editor) {
+         const std::uint32_t corner = editor.firstOf(0);
+         TerrainBlock block = editor.block(corner);
+         ASSERT_EQ(block.valid.at(postIndex(block, 0, -1)), 0);
+         block.heights.at(postIndex(block, 0, -1)) += 5;
+         editor.setBlock(corner, block);
+       })},
+      // A post with an odd row on the eastern border, away from the corners: no parent and no ring has it.
+      {IssueCode::kHgtBorder,
+       byEditing([](DatabaseEditor& editor) { nudge(editor, innerLeaf(editor), 8, 3); }), untouched()},
+      // A row of control points short.
+      {IssueCode::kHgtPatches, withControls([](auto& rows) { rows.pop_back(); }, CheckLevel::kDecode),
+       withControls([](auto&) {}, CheckLevel::kGeometry)},
+  };
+}
+
+TEST(ControlPoints, one_beside_the_ellipsoid_or_out_of_line_is_found) {
+  for (const bool along_axis : {false, true}) {
+    const auto move = [&](auto& rows) { moveControl(rows, 0.002, along_axis); };
+    const Report report = withControls(move, CheckLevel::kGeometry)({});
+    ASSERT_EQ(report.groups.size(), 1u) << listing(report);
+    EXPECT_EQ(report.groups[0].code, IssueCode::kHgtPatches) << listing(report);
+    // The lower levels cannot see it.
+    EXPECT_TRUE(withControls(move, CheckLevel::kDecode)({}).groups.empty());
+  }
+}
+
+}  // namespace deltaz
