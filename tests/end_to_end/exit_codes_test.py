@@ -94,7 +94,7 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["--repeat"], ["dbview", area, *png, "--repeat", "0"]),
             (["--color"], ["dbview", area, *png, "--color", "summer"]),
             (["AREA.dz"], ["dbcheck"]),
-            (["--level", "geometry"], ["dbcheck", area, "--level", "geometry"]),
+            (["--level", "depth"], ["dbcheck", area, "--level", "depth"]),
             (["--report", "sarif"], ["dbcheck", area, "--report", "sarif=x"]),
             (["--report"], ["dbcheck", area, "--report", "json="]),
             (["--fail-on"], ["dbcheck", area, "--fail-on", "information"]),
