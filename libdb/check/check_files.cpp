@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "formats/seam.h"
 #include "libdb/access/referenced_file.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/report_detail.h"
@@ -143,6 +144,31 @@ std::shared_ptr<const PatchLattice> patchesOf(CheckContext& context, std::size_t
   return nullptr;
 }
 
+// Decodes the seams between grids; what is wrong with them is reported.
+void checkSeams(CheckContext& context) {
+  std::size_t files = 0;
+  for (const CheckedFile& file : context.listed) {
+    if (file.reference.role != FileRole::kSeams) continue;
+    if (++files == 2) {
+      context.report.add(makeIssue(IssueCode::kManField, "two files of seams are listed",
+                                   inFile(std::string(kAreaFileName))));
+    }
+    if (!file.container) continue;
+    for (std::uint32_t block = 0; block < file.container->blockCount(); ++block) {
+      IssueLocation where = inFile(file.reference.name);
+      where.block = block;
+      const auto bytes = file.container->read(block, BlockType::kSeam);
+      if (!bytes.ok()) {
+        addError(context.report, bytes.error(), where);
+        continue;
+      }
+      const auto seam = decodeSeam(bytes.value(), context.area.grids,
+                                   fmt::format("{}, block {}", file.reference.name, block));
+      if (!seam.ok()) addError(context.report, seam.error(), where);
+    }
+  }
+}
+
 }  // namespace
 
 bool openDatabaseFiles(CheckContext& context) {
@@ -160,6 +186,7 @@ bool openDatabaseFiles(CheckContext& context) {
   }
   for (std::size_t grid = 0; grid < context.area.grids.size(); ++grid)
     context.grids.emplace_back(context.area.grids[grid], patchesOf(context, grid));
+  checkSeams(context);
   checkFileList(context);
   return true;
 }
