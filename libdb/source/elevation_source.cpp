@@ -38,7 +38,7 @@ class AreaReader {
     for (SourceRaster& raster : rasters_) DELTAZ_TRY(placeOnEarth(raster));
     const bool resampled = options_.grid != "source" || options_.spacing;
     if (resampled) DELTAZ_TRY(resample());
-    if (options_.voids == VoidPolicy::kFill) DELTAZ_TRY(fill());
+    if (options_.voids == VoidPolicy::kFill) fill();
     std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
       return spacingInMetres(a) < spacingInMetres(b);
     });
@@ -219,12 +219,8 @@ class AreaReader {
     return placeOnEarth(rasters_.front());
   }
 
-  Status fill() {
-    for (SourceRaster& raster : rasters_) {
-      DELTAZ_TRY_ASSIGN(const std::uint64_t filled, fillVoidPosts(raster.grid, raster.path));
-      result_.filled_posts += filled;
-    }
-    return Success{};
+  void fill() {
+    for (SourceRaster& raster : rasters_) result_.filled_posts += fillVoidPosts(raster.grid);
   }
 
   const SourceOptions& options_;

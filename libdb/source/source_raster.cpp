@@ -180,14 +180,33 @@ Result<PostValues> readValues(GDALRasterBand& band, const StoredType& type, cons
   return values;
 }
 
+// The band that says how opaque each post is, if there is one. GDAL makes a mask of it for some types only.
+GDALRasterBand* alphaBand(GDALDataset& dataset) {
+  for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
+    GDALRasterBand* const band = dataset.GetRasterBand(number);
+    if (band->GetColorInterpretation() == GCI_AlphaBand) return band;
+  }
+  return nullptr;
+}
+
 // 1 where a mask or an alpha band of the source says void; empty if it has none.
-Result<std::vector<std::uint8_t>> readMask(GDALRasterBand& band, const SourceDescription& source,
-                                           const std::string& path, const GdalSession& session) {
-  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return std::vector<std::uint8_t>{};
-  DELTAZ_TRY_ASSIGN(std::vector<std::uint8_t> mask,
-                    readRows<std::uint8_t>(*band.GetMaskBand(), GDT_Byte, source, path, session));
-  for (std::uint8_t& value : mask) value = value == 0 ? 1 : 0;
-  return mask;
+Result<std::vector<std::uint8_t>> readMask(GDALDataset& dataset, GDALRasterBand& band,
+                                           const SourceDescription& source, const std::string& path,
+                                           const GdalSession& session) {
+  std::vector<std::uint8_t> masked;
+  if ((band.GetMaskFlags() & GMF_PER_DATASET) != 0 && (band.GetMaskFlags() & GMF_ALPHA) == 0) {
+    DELTAZ_TRY_ASSIGN(masked, readRows<std::uint8_t>(*band.GetMaskBand(), GDT_Byte, source, path, session));
+    for (std::uint8_t& value : masked) value = value == 0 ? 1 : 0;
+  }
+  GDALRasterBand* const alpha = alphaBand(dataset);
+  if (alpha == nullptr || alpha == &band) return masked;
+  DELTAZ_TRY_ASSIGN(const std::vector<float> opacity,
+                    readRows<float>(*alpha, GDT_Float32, source, path, session));
+  masked.resize(opacity.size(), 0);
+  for (std::size_t k = 0; k < opacity.size(); ++k) {
+    if (opacity[k] == 0) masked[k] = 1;
+  }
+  return masked;
 }
 
 // ---- what the source says
@@ -305,7 +324,7 @@ Result<SourceRaster> readOpened(GDALDataset& dataset, const std::string& path, c
   meaning.unit = *metres;
   const int failures = session.failures();
   DELTAZ_TRY_ASSIGN(PostValues values, readValues(band, *type, source, path, session));
-  DELTAZ_TRY_ASSIGN(const std::vector<std::uint8_t> masked, readMask(band, source, path, session));
+  DELTAZ_TRY_ASSIGN(const std::vector<std::uint8_t> masked, readMask(dataset, band, source, path, session));
   // Some drivers stop reading without a failed call.
   if (session.failures() > failures) return unreadable(path, session);
   if (source.driver == "USGSDEM") DELTAZ_TRY(checkUsgsDemComplete(path, static_cast<int>(source.columns)));

@@ -2,64 +2,131 @@
 
 #include <algorithm>
 #include <cmath>
-#include <gdal_alg.h>
-#include <gdal_priv.h>
 #include <vector>
-
-#include "libdb/source/gdal_session.h"
 
 namespace deltaz {
 
 namespace {
 
-// Rounds of smoothing over what was filled, so that its edges do not show as creases.
-constexpr int kSmoothings = 2;
-// Below every height above the lowest.
-constexpr float kUnfilled = -1;
+// Rounds of relaxation on every level. The coarser levels have done most of the work, so a few even out what
+// interpolation leaves.
+constexpr int kRelaxations = 12;
+
+struct Level {
+  std::int64_t columns = 0, rows = 0;
+  std::vector<double> heights;        // quanta
+  std::vector<std::uint8_t> is_void;  // 1 where the height is ours to choose
+
+  std::size_t at(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(row * columns + column);
+  }
+};
+
+// Every height of the coarser level is the average of those below that are not void.
+Level averaged(const Level& fine) {
+  Level coarse;
+  coarse.columns = (fine.columns + 1) / 2;
+  coarse.rows = (fine.rows + 1) / 2;
+  const auto size = static_cast<std::size_t>(coarse.columns * coarse.rows);
+  coarse.heights.assign(size, 0);
+  coarse.is_void.assign(size, 1);
+  for (std::int64_t row = 0; row < coarse.rows; ++row) {
+    for (std::int64_t column = 0; column < coarse.columns; ++column) {
+      double sum = 0;
+      int count = 0;
+      for (std::int64_t j = 2 * row; j < std::min(2 * row + 2, fine.rows); ++j) {
+        for (std::int64_t i = 2 * column; i < std::min(2 * column + 2, fine.columns); ++i) {
+          if (fine.is_void[fine.at(i, j)] != 0) continue;
+          sum += fine.heights[fine.at(i, j)];
+          ++count;
+        }
+      }
+      if (count == 0) continue;
+      coarse.heights[coarse.at(column, row)] = sum / count;
+      coarse.is_void[coarse.at(column, row)] = 0;
+    }
+  }
+  return coarse;
+}
+
+// Where a finer index lies between two coarser ones: the lower of them, and the share of the upper.
+struct Between {
+  std::int64_t low = 0, high = 0;
+  double share = 0;
+};
+Between between(std::int64_t fine, std::int64_t coarse_count) {
+  const double position = std::max(0.0, 0.5 * static_cast<double>(fine) - 0.25);
+  const auto low = std::min(static_cast<std::int64_t>(position), coarse_count - 1);
+  return {low, std::min(low + 1, coarse_count - 1), position - static_cast<double>(low)};
+}
+
+void interpolateVoids(Level& fine, const Level& coarse) {
+  for (std::int64_t row = 0; row < fine.rows; ++row) {
+    const Between y = between(row, coarse.rows);
+    for (std::int64_t column = 0; column < fine.columns; ++column) {
+      if (fine.is_void[fine.at(column, row)] == 0) continue;
+      const Between x = between(column, coarse.columns);
+      const double south = coarse.heights[coarse.at(x.low, y.low)] * (1 - x.share) +
+                           coarse.heights[coarse.at(x.high, y.low)] * x.share;
+      const double north = coarse.heights[coarse.at(x.low, y.high)] * (1 - x.share) +
+                           coarse.heights[coarse.at(x.high, y.high)] * x.share;
+      fine.heights[fine.at(column, row)] = south * (1 - y.share) + north * y.share;
+    }
+  }
+}
+
+// Each void height becomes the average of its neighbours', in a fixed order.
+void relax(Level& level) {
+  for (int round = 0; round < kRelaxations; ++round) {
+    for (std::int64_t row = 0; row < level.rows; ++row) {
+      for (std::int64_t column = 0; column < level.columns; ++column) {
+        if (level.is_void[level.at(column, row)] == 0) continue;
+        double sum = 0;
+        int count = 0;
+        const auto add = [&](std::int64_t i, std::int64_t j) {
+          if (i < 0 || j < 0 || i >= level.columns || j >= level.rows) return;
+          sum += level.heights[level.at(i, j)];
+          ++count;
+        };
+        add(column - 1, row);
+        add(column + 1, row);
+        add(column, row - 1);
+        add(column, row + 1);
+        if (count > 0) level.heights[level.at(column, row)] = sum / count;
+      }
+    }
+  }
+}
 
 }  // namespace
 
-Result<std::uint64_t> fillVoidPosts(RawGrid& grid, const std::string& path) {
-  if (std::find(grid.valid.begin(), grid.valid.end(), std::uint8_t{0}) == grid.valid.end())
-    return std::uint64_t{0};
-  const GdalSession session;
-  const int columns = static_cast<int>(grid.header.x_axis.count),
-            rows = static_cast<int>(grid.header.y_axis.count);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  if (driver == nullptr) return internalError(path, "GDAL has no memory driver");
-  const GDALDatasetUniquePtr heights(driver->Create("", columns, rows, 1, GDT_Float32, nullptr));
-  const GDALDatasetUniquePtr mask(driver->Create("", columns, rows, 1, GDT_Byte, nullptr));
-  if (!heights || !mask) return accessError(path, "cannot fill the voids", session.lastFailure());
-  // In quanta above the lowest, so that a float holds them as well as it can.
-  const std::int32_t lowest = *std::min_element(grid.heights.begin(), grid.heights.end());
-  std::vector<float> numbers(grid.heights.size());
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    numbers[k] = grid.valid[k] == 0 ? kUnfilled : static_cast<float>(std::int64_t{grid.heights[k]} - lowest);
-  GDALRasterBand& of_heights = *heights->GetRasterBand(1);
-  GDALRasterBand& of_mask = *mask->GetRasterBand(1);
-  bool failed = of_heights.RasterIO(GF_Write, 0, 0, columns, rows, numbers.data(), columns, rows, GDT_Float32,
-                                    0, 0, nullptr) != CE_None;
-  failed = failed || of_mask.RasterIO(GF_Write, 0, 0, columns, rows, grid.valid.data(), columns, rows,
-                                      GDT_Byte, 0, 0, nullptr) != CE_None;
-  failed = failed || GDALFillNodata(&of_heights, &of_mask, std::hypot(columns, rows), 0, kSmoothings, nullptr,
-                                    nullptr, nullptr) != CE_None;
-  failed = failed || of_heights.RasterIO(GF_Read, 0, 0, columns, rows, numbers.data(), columns, rows,
-                                         GDT_Float32, 0, 0, nullptr) != CE_None;
-  if (failed) return internalError(path, "the voids could not be filled: " + session.lastFailure());
-  std::uint64_t filled = 0;
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (grid.valid[k] != 0 || !(numbers[k] >= 0)) continue;
-    grid.heights[k] = static_cast<std::int32_t>(std::llround(numbers[k]) + lowest);
-    grid.valid[k] = 1;
-    if (!grid.void_kinds.empty()) grid.void_kinds[k] = 0;
-    ++filled;
+std::uint64_t fillVoidPosts(RawGrid& grid) {
+  const auto voids =
+      static_cast<std::uint64_t>(std::count(grid.valid.begin(), grid.valid.end(), std::uint8_t{0}));
+  if (voids == 0 || voids == grid.valid.size()) return 0;
+  std::vector<Level> levels(1);
+  levels[0].columns = grid.header.x_axis.count;
+  levels[0].rows = grid.header.y_axis.count;
+  levels[0].heights.assign(grid.heights.begin(), grid.heights.end());
+  levels[0].is_void.resize(grid.valid.size());
+  std::transform(grid.valid.begin(), grid.valid.end(), levels[0].is_void.begin(),
+                 [](std::uint8_t valid) { return static_cast<std::uint8_t>(valid == 0 ? 1 : 0); });
+  // Up to the first level without voids: the last one, of a single post, has none.
+  while (std::find(levels.back().is_void.begin(), levels.back().is_void.end(), std::uint8_t{1}) !=
+         levels.back().is_void.end())
+    levels.push_back(averaged(levels.back()));
+  for (std::size_t level = levels.size() - 1; level-- > 0;) {
+    interpolateVoids(levels[level], levels[level + 1]);
+    relax(levels[level]);
+    levels.pop_back();
   }
-  if (std::find(grid.valid.begin(), grid.valid.end(), std::uint8_t{0}) == grid.valid.end()) {
-    grid.valid.clear();
-    grid.void_kinds.clear();
-    grid.header.sentinels.clear();
+  for (std::size_t k = 0; k < grid.heights.size(); ++k) {
+    if (grid.valid[k] == 0) grid.heights[k] = static_cast<std::int32_t>(std::lround(levels[0].heights[k]));
   }
-  return filled;
+  grid.valid.clear();
+  grid.void_kinds.clear();
+  grid.header.sentinels.clear();
+  return voids;
 }
 
 }  // namespace deltaz

@@ -55,13 +55,14 @@ def wrong_options_end_with_2_and_are_named(folder):
     png = ["-o", folder / "x.png"]
     for words, command in [
             (["--spacing"], ["dbbuild", "terrain", dem, "-o", out, "--spacing", "30m"]),
-            (["--bounds"], ["dbbuild", "terrain", dem, "-o", out, "--bounds", "7,46,8,47"]),
+            (["--bounds"], ["dbbuild", "terrain", dem, "-o", out, "--bounds", "7,46,8"]),
             (["--normals"], ["dbbuild", "terrain", dem, "-o", out, "--normals", "derived"]),
             (["--resume"], ["dbbuild", "terrain", dem, "-o", out, "--resume"]),
             (["-o"], ["dbbuild", "terrain", dem]),
             (["option, not a name"], ["dbbuild", "terrain", dem, "-o", "--overwrite"]),
             (["DEM"], ["dbbuild", "terrain", "-o", out]),
-            (["one DEM"], ["dbbuild", "terrain", dem, dem, "-o", out]),
+            (["--quantum"], ["dbbuild", "terrain", dem, "-o", out, "--quantum", "fine"]),
+            (["Name the database first"], ["dbcheck", "--against", dem, area]),
             (["--leaf", "power of two"], ["dbbuild", "terrain", dem, "-o", out, "--leaf", "65"]),
             (["--leaf"], ["dbbuild", "terrain", dem, "-o", out, "--leaf", "4"]),
             (["--leaf"], ["dbbuild", "terrain", dem, "-o", out, "--leaf", "64x"]),

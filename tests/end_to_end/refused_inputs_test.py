@@ -1,4 +1,6 @@
 """Sources and targets that must be refused: the right words, the right exit code, and nothing half made."""
+import zipfile
+
 from harness import (RAINIER, build, case, damaged_database, folder_bytes, gdal, main, no_leftovers, require, run, small_dem)
 
 
@@ -66,24 +68,27 @@ def a_rotated_source_is_refused(folder):
 
 
 @case
-def a_projected_source_is_refused(folder):
-    small = small_dem(folder)
-    gdal("gdalwarp", "-q", "-t_srs", "EPSG:32632", small, folder / "utm.tif")
-    refuse(folder, folder / "utm.tif", 1, ["utm.tif", "projected"])
-
-
-@case
-def a_floating_point_source_is_refused(folder):
-    small = small_dem(folder)
-    gdal("gdal_translate", "-q", "-ot", "Float32", small, folder / "float.tif")
-    refuse(folder, folder / "float.tif", 1, ["float.tif", "Float32"])
-
-
-@case
 def a_source_of_several_bands_is_refused(folder):
     small = small_dem(folder)
     gdal("gdal_translate", "-q", "-b", "1", "-b", "1", small, folder / "bands.tif")
-    refuse(folder, folder / "bands.tif", 1, ["bands.tif", "band"])
+    refuse(folder, folder / "bands.tif", 2, ["bands.tif", "2 bands", "--band"])
+    refuse(folder, folder / "bands.tif", 2, ["no band 3"], "--band", "3")
+
+
+@case
+def wrong_values_of_options_are_refused(folder):
+    small = small_dem(folder)
+    for options in (["--quantum", "0"], ["--quantum", "-1"], ["--quantum", "1e"], ["--bounds", "1,2,3"], ["--bounds", "7,46,7,47"],
+                    ["--bounds", "100,0,101,1"], ["--spacing", "30"], ["--spacing", "0m"], ["--spacing", "30m"], ["--grid", "moon"],
+                    ["--void", "guess"], ["--band", "0"], ["--nodata", "none"], ["--spacing", "1as", "--grid", "EPSG:32632"]):
+        refuse(folder, small, 2, [options[0]], *options)
+
+
+@case
+def an_archive_without_a_raster_is_refused(folder):
+    with zipfile.ZipFile(folder / "letters.zip", "w") as archive:
+        archive.writestr("letter.txt", "Dear reader")
+    refuse(folder, folder / "letters.zip", 1, ["letters.zip", "no raster"])
 
 
 @case

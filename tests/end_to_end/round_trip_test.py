@@ -3,36 +3,7 @@ import json
 import struct
 
 from harness import RAINIER, build, case, gdal, main, real_files, require, run, small_dem
-
-
-def description(file):
-    """What GDAL says of a raster that must survive: size, type, sentinel, place, system, registration, unit."""
-    info = json.loads(gdal("gdalinfo", "-json", "-checksum", "-mm", file))
-    band = info["bands"][0]
-    return {"size": info["size"], "geotransform": info["geoTransform"], "type": band["type"], "nodata": band.get("noDataValue"),
-            "unit": band.get("unit", ""), "checksum": band["checksum"], "bands": len(info["bands"]), "extremes": (band.get("computedMin"), band.get("computedMax")),
-            "registration": info["metadata"].get("", {}).get("AREA_OR_POINT", "Area"),
-            "axes": info["coordinateSystem"]["dataAxisToSRSAxisMapping"],
-            "system": gdal("gdalsrsinfo", "-o", "proj4", file).strip()}
-
-
-def raw_posts(file, folder):
-    """The posts as little-endian bytes, row by row from the north, by way of GDAL."""
-    raw = folder / "posts.bil"
-    gdal("gdal_translate", "-q", "-of", "EHdr", file, raw)
-    content = raw.read_bytes()
-    for side in folder.glob("posts.*"):
-        side.unlink()
-    return content
-
-
-def same_raster(source, exported, folder):
-    wanted, found = description(source), description(exported)
-    for member, value in wanted.items():
-        require(found[member] == value, f"{source.name}: {member} was {value} and came back as {found[member]}")
-    require(raw_posts(source, folder) == raw_posts(exported, folder), f"{source.name}: posts differ")
-    require(gdal("gdalsrsinfo", "-e", "-o", "epsg", source).strip() == gdal("gdalsrsinfo", "-e", "-o", "epsg", exported).strip(),
-            f"{source.name}: another EPSG code")
+from raster_judge import raw_posts, same_raster
 
 
 def round_trip(source, folder):

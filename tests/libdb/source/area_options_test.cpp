@@ -80,6 +80,25 @@ TEST(VoidFilling, voids_take_heights_between_their_neighbours_and_are_counted) {
   EXPECT_EQ(readAll({path}).filled_posts, 0u);
 }
 
+// Every second column and a corner are missing: the plane is found again, but for its rim.
+TEST(VoidFilling, a_plane_full_of_holes_becomes_the_plane) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(64, 64);
+  for (std::size_t k = 0; k < raster.values.size(); ++k) {
+    const std::size_t row = k / 64, column = k % 64;
+    const bool hole = row > 20 && row < 44 && column > 20 && column < 44;
+    if (hole || column % 2 == 1) raster.values[k] = -32768;
+  }
+  raster.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const RawGrid grid = readOne(makeRaster(folder, raster), {.voids = VoidPolicy::kFill});
+  EXPECT_TRUE(grid.valid.empty());
+  for (std::int64_t row = 1; row < 63; ++row) {
+    for (std::int64_t column = 1; column < 62; ++column)
+      EXPECT_NEAR(grid.height(column, row), static_cast<double>(2 * column + 3 * row), 3)
+          << column << ", " << row;
+  }
+}
+
 TEST(Resampling, a_plane_stays_a_plane_and_the_error_is_that_of_rounding) {
   const TemporaryDirectory folder;
   const RawGrid grid = readOne(makeRaster(folder, plane(61, 61)), {.spacing = PostSpacing{2.5, true}});

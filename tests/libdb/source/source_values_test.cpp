@@ -96,7 +96,7 @@ TEST(SourceValues, scale_and_offset_are_folded_into_heights_exactly) {
   EXPECT_EQ(grid.header.quantum, (Rational{1, 20}));  // of 1/10 and 1000.05
   EXPECT_EQ(grid.header.height_error, 0);
   EXPECT_EQ(restored(grid), raster.values);
-  EXPECT_EQ(grid.height(0, 1) * grid.header.quantum.value(), -1000.05);
+  EXPECT_DOUBLE_EQ(grid.height(0, 1) * grid.header.quantum.value(), -1000.05);
 }
 
 RC_GTEST_PROP(SourceValues, every_stored_value_comes_back_whatever_simple_scale_and_offset, ()) {
