@@ -1,0 +1,197 @@
+"""Several sources as one area, and the options that say how sources become grids."""
+import json
+import pathlib
+import subprocess
+import zipfile
+
+from harness import RAINIER, TEST_DATA, case, gdal, main, require, run, small_dem
+from raster_judge import raw_posts, same_raster, values
+
+
+def info(area):
+    return run("dbbuild", "info", area, "--json").json()
+
+
+@case
+def neighbouring_tiles_become_one_grid_exactly(folder):
+    if not TEST_DATA:
+        print("DELTAZ_TEST_DATA is not set: nothing to do")
+        return
+    south, north = (pathlib.Path(TEST_DATA) / "dem" / f"{name}.hgt.zip" for name in ("N41E001", "N42E001"))
+    area, exported = folder / "both.dz", folder / "both.tif"
+    run("dbbuild", "terrain", south, north, "-o", area)
+    grids = info(area)["grids"]
+    require(len(grids) == 1 and grids[0]["latitude"]["count"] == 2401 and len(grids[0]["sources"]) == 2, grids)
+    run("dbcheck", area, "--level", "all", "--against", south, north)
+    run("dbbuild", "export", area, "-o", exported)
+    row = 2 * 1201
+    below, above, both = raw_posts(south, folder), raw_posts(north, folder), raw_posts(exported, folder)
+    # The border row is in both; the southern tile is named first, and a void never wins.
+    require(both[:1200 * row] == above[:1200 * row], "the northern tile is not as it was")
+    require(both[1201 * row:] == below[row:], "the southern tile is not as it was")
+    border = zip(values(exported, folder)[1200 * 1201:1201 * 1201], values(south, folder)[:1201], values(north, folder)[-1201:], strict=True)
+    require(all(found == (first if first != -32768 else second) for found, first, second in border), "the border row")
+    # A tile alone is not what the area was built from.
+    ended = run("dbcheck", area, "--against", south, "--json", expect=1)
+    require([issue["code"] for issue in ended.json()["issues"]] == ["SRC_EXTENT"], ended)
+
+
+@case
+def an_inset_of_finer_posts_is_a_grid_of_its_own(folder):
+    if not TEST_DATA:
+        print("DELTAZ_TEST_DATA is not set: nothing to do")
+        return
+    python = "/usr/bin/python3"
+    if subprocess.run([python, "-c", "import osgeo, numpy"], capture_output=True, check=False).returncode != 0:
+        print("skipped: python3-gdal is missing")
+        return
+    data = pathlib.Path(TEST_DATA)
+    coarse, large, fine = data / "dem" / "mt_rainier_90m.tif", folder / "large.tif", folder / "fine.tif"
+    subprocess.run([python, data / "make_large_dem.py", data / "dem" / "rainier_filled.tif", "3", large], check=True)
+    gdal("gdal_translate", "-q", "-srcwin", "700", "1500", "901", "601", large, fine)
+    area = folder / "inset.dz"
+    run("dbbuild", "terrain", coarse, fine, "-o", area)
+    grids = info(area)["grids"]
+    require([grid["sources"][0]["name"] for grid in grids] == ["fine.tif", coarse.name], "the finer grid comes first")
+    for number, source in ((0, fine), (1, coarse)):
+        exported = folder / f"grid{number}.tif"
+        run("dbbuild", "export", area, "-o", exported, "--grid", number)
+        same_raster(source, exported, folder)
+    run("dbcheck", area, "--level", "all", "--against", coarse, fine)
+    run("dbbuild", "export", area, "-o", folder / "none.tif", "--grid", "2", expect=2, words=["--grid"])
+
+
+@case
+def projected_sources_come_back_as_they_were(folder):
+    small = small_dem(folder)
+    for system in ("EPSG:32632", "EPSG:3857", "EPSG:2056", "EPSG:5514"):
+        source = folder / f"{system[5:]}.tif"
+        gdal("gdalwarp", "-q", "-t_srs", system, "-tr", "500", "500", small, source)
+        area, exported = folder / f"{system[5:]}.dz", folder / f"{system[5:]}.out.tif"
+        run("dbbuild", "terrain", source, "-o", area)
+        require(info(area)["grids"][0]["kind"] == "projected", "not on its own grid")
+        run("dbcheck", area, "--level", "decode", "--against", source)
+        run("dbbuild", "export", area, "-o", exported)
+        same_raster(source, exported, folder)
+    # Another projection with the same numbers is another place.
+    gdal("gdal_translate", "-q", "-a_srs", "EPSG:32633", folder / "32632.tif", folder / "moved.tif")
+    ended = run("dbcheck", folder / "32632.dz", "--against", folder / "moved.tif", "--json", expect=1)
+    require("SRC_GEOREFERENCE" in {issue["code"] for issue in ended.json()["issues"]}, ended)
+
+
+@case
+def every_type_scale_and_unit_comes_back(folder):
+    small = small_dem(folder)
+    for name, options in {"byte": ["-ot", "Byte", "-scale", "0", "900", "1", "255", "-a_nodata", "0"], "uint16": ["-ot", "UInt16", "-a_nodata", "65535"],
+                          "int32": ["-ot", "Int32"], "uint32": ["-ot", "UInt32", "-a_nodata", "4294967295"], "float32": ["-ot", "Float32"],
+                          "float64": ["-ot", "Float64"], "tenths": ["-ot", "Float32", "-scale", "0", "1000", "0", "100"],
+                          "scaled": ["-a_scale", "0.1", "-a_offset", "-100.5"], "feet": ["-ot", "Float32", "-a_nodata", "-9999"]}.items():
+        source, area, exported = folder / f"{name}.tif", folder / f"{name}.dz", folder / f"{name}.out.tif"
+        gdal("gdal_translate", "-q", *options, small, source)
+        if name == "feet":
+            gdal("gdal_translate", "-q", "-of", "VRT", source, folder / "feet.vrt")
+            text = (folder / "feet.vrt").read_text().replace("<ColorInterp>", "<UnitType>ft</UnitType><ColorInterp>")
+            (folder / "feet.vrt").write_text(text)
+            source = folder / "feet.vrt"
+        run("dbbuild", "terrain", source, "-o", area)
+        run("dbcheck", area, "--level", "all", "--against", source)
+        run("dbbuild", "export", area, "-o", exported)
+        same_raster(source, exported, folder)
+        for told in ("scale", "offset"):
+            wanted, found = (json.loads(gdal("gdalinfo", "-json", file))["bands"][0].get(told) for file in (source, exported))
+            require(wanted == found, f"{name}: {told} was {wanted} and came back as {found}")
+
+
+@case
+def an_archive_of_several_rasters_is_several_sources(folder):
+    whole = small_dem(folder, void=False)
+    gdal("gdal_translate", "-q", "-srcwin", "0", "0", "25", "30", whole, folder / "west.tif")
+    gdal("gdal_translate", "-q", "-srcwin", "20", "0", "20", "30", whole, folder / "east.tif")
+    with zipfile.ZipFile(folder / "both.zip", "w") as archive:
+        archive.write(folder / "west.tif", "tiles/west.tif")
+        archive.write(folder / "east.tif", "tiles/more/east.tif")
+        archive.writestr("tiles/readme.txt", "Two tiles")
+    area, exported = folder / "both.dz", folder / "both.tif"
+    run("dbbuild", "terrain", folder / "both.zip", "-o", area)
+    run("dbcheck", area, "--against", folder / "both.zip")
+    run("dbbuild", "export", area, "-o", exported)
+    same_raster(whole, exported, folder)
+    run("dbbuild", "terrain", f"/vsizip/{folder}/both.zip/tiles/west.tif", "-o", folder / "one.dz")
+
+
+@case
+def a_cut_area_holds_the_sources_own_posts(folder):
+    area, exported, window = folder / "cut.dz", folder / "cut.tif", folder / "window.tif"
+    west, dx, _, north, _, dy = json.loads(gdal("gdalinfo", "-json", RAINIER))["geoTransform"]
+    # Posts 20 to 100 eastwards and 30 to 90 southwards, named a little inside.
+    bounds = [west + 20.9 * dx, north + 90.1 * dy, west + 100.1 * dx, north + 30.9 * dy]
+    run("dbbuild", "terrain", RAINIER, "-o", area, "--bounds", ",".join(map(repr, bounds)))
+    run("dbcheck", area, "--level", "all", "--against", RAINIER)
+    run("dbbuild", "export", area, "-o", exported)
+    gdal("gdal_translate", "-q", "-srcwin", "20", "30", "81", "61", RAINIER, window)
+    same_raster(window, exported, folder)
+
+
+@case
+def a_void_is_filled_only_when_asked(folder):
+    small = small_dem(folder)
+    ended = run("dbbuild", "terrain", small, "-o", folder / "filled.dz", "--void", "fill", "--json").json()
+    require(ended["filled"] == 4 and ended["voids"] == 0, ended)
+    options = info(folder / "filled.dz")["options"]
+    require(options["void"] == "fill" and options["void_filled_posts"] == "4", options)
+    run("dbcheck", folder / "filled.dz", "--level", "all", "--against", small)
+
+
+@case
+def a_resampled_area_says_what_it_costs(folder):
+    small = small_dem(folder, void=False)
+    for options in (["--grid", "EPSG:32632", "--spacing", "500m"], ["--spacing", "30as"], ["--grid", "geodetic", "--spacing", "20as"]):
+        area, exported = folder / "resampled.dz", folder / "resampled.tif"
+        run("dbbuild", "terrain", small, "-o", area, *options, "--overwrite")
+        grid = info(area)["grids"][0]
+        require(grid["resampling"]["method"] == "bilinear" and grid["resampling"]["largest_error"] >= grid["resampling"]["rms_error"] >= 0, grid)
+        ended = run("dbcheck", area, "--level", "decode", "--against", small, "--json").json()
+        require(ended["checked"]["posts_compared"] > 1000, ended)
+        run("dbbuild", "export", area, "-o", exported, "--overwrite")
+        # Independent: GDAL's own bilinear resampling to the same posts, away from the edges.
+        there = json.loads(gdal("gdalinfo", "-json", exported))
+        west, south, east, north = there["cornerCoordinates"]["lowerLeft"] + there["cornerCoordinates"]["upperRight"]
+        gdal("gdalwarp", "-q", "-overwrite", "-r", "bilinear", "-et", "0", "-ot", "Float32", "-dstnodata", "-32768", "-t_srs", exported_system(folder, exported),
+             "-te", repr(west), repr(south), repr(east), repr(north), "-ts", *there["size"], small, folder / "judge.tif")
+        differences = sorted(abs(a - b) for a, b in zip(values(exported, folder), values(folder / "judge.tif", folder), strict=True)
+                             if -32768 not in (a, b))
+        require(len(differences) > 100 and differences[int(0.9 * len(differences))] < 0.02, f"{options}: {differences[-10:]}")
+
+
+def exported_system(folder, file):
+    path = folder / "system.wkt"
+    path.write_text(gdal("gdalsrsinfo", "-o", "wkt2", file))
+    return path
+
+
+@case
+def a_usgs_dem_cut_short_is_refused(folder):
+    if not TEST_DATA:
+        print("DELTAZ_TEST_DATA is not set: nothing to do")
+        return
+    content = (pathlib.Path(TEST_DATA) / "dem" / "SainteHelens.dem").read_bytes()
+    for share in (0.9, 0.5, 0.05):
+        (folder / "short.dem").write_bytes(content[:int(share * len(content))])
+        run("dbbuild", "terrain", folder / "short.dem", "-o", folder / "x.dz", expect=1, words=["short.dem"])
+        require(not (folder / "x.dz").exists(), "half a DEM was built from")
+
+
+@case
+def a_guess_at_a_datum_is_refused_unless_allowed(folder):
+    first = small_dem(folder)
+    nowhere = folder / "nowhere.tif"
+    gdal("gdal_translate", "-q", "-a_srs", 'GEOGCS["Nowhere",DATUM["Nowhere_1900",SPHEROID["Clarke 1866",6378206.4,294.9786982138982]],'
+         'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]', first, nowhere)
+    run("dbbuild", "terrain", first, nowhere, "-o", folder / "x.dz", expect=1, words=["nowhere.tif", "--allow-ballpark"])
+    ended = run("dbbuild", "terrain", first, nowhere, "-o", folder / "x.dz", "--allow-ballpark")
+    require("warning" in ended.err and "guess" in ended.err, ended)
+    run("dbcheck", folder / "x.dz", "--level", "decode", "--against", first, nowhere)
+
+
+if __name__ == "__main__":
+    main()
