@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <map>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "libdb/build/grid_locator.h"
 #include "librender/scene/view_volume.h"
@@ -16,19 +15,30 @@ namespace {
 
 using Post = std::array<std::int64_t, 2>;
 
-struct EdgeKey {
-  std::uint16_t grid;
-  Post from, to;
-  bool operator==(const EdgeKey&) const = default;
+// An edge of a face by the numbers of its posts, the smaller first.
+struct Edge {
+  std::uint64_t low = 0, high = 0;
+  bool forward = false;  // from low to high
+  auto operator<=>(const Edge&) const = default;
 };
-struct EdgeHash {
-  std::size_t operator()(const EdgeKey& edge) const {
-    std::uint64_t value = edge.grid;
-    for (const std::int64_t part : {edge.from[0], edge.from[1], edge.to[0], edge.to[1]})
-      value = (value ^ static_cast<std::uint64_t>(part)) * 0x9E3779B97F4A7C15u + (value >> 31);
-    return static_cast<std::size_t>(value);
-  }
-};
+
+// Numbers posts so that equal posts get equal numbers.
+std::uint64_t numberOf(std::uint16_t grid, const Post& post) {
+  constexpr std::int64_t kMiddle = std::int64_t{1} << 23;
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << 24) - 1;
+  return std::uint64_t{grid} << 48 | (static_cast<std::uint64_t>(post[0] + kMiddle) & kMask) << 24 |
+         (static_cast<std::uint64_t>(post[1] + kMiddle) & kMask);
+}
+// The post of a number, given any post of the same area.
+Post postOf(std::uint64_t number, const Post& near) {
+  const auto decode = [](std::uint64_t bits, std::int64_t beside) {
+    constexpr std::int64_t kMiddle = std::int64_t{1} << 23, kTurn = std::int64_t{1} << 24;
+    std::int64_t value = static_cast<std::int64_t>(bits & (kTurn - 1)) - kMiddle;
+    value += (beside - value + (beside >= value ? kTurn / 2 : -kTurn / 2)) / kTurn * kTurn;
+    return value;
+  };
+  return {decode(number >> 24, near[0]), decode(number, near[1])};
+}
 
 bool sameBits(const Vector3& a, const Vector3& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z;
@@ -104,7 +114,7 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
 
 std::string findCrack(const Database& database, const CutMesh& mesh) {
   const CutIndex index(database, mesh.cut);
-  std::unordered_map<EdgeKey, int, EdgeHash> edges;
+  std::vector<Edge> edges;
   std::map<std::pair<std::uint16_t, Post>, Vector3> border_vertices;
   double doubled_area = 0, expected = 0;
   for (const MeshNode& node : mesh.nodes) {
@@ -119,8 +129,8 @@ std::string findCrack(const Database& database, const CutMesh& mesh) {
         const Post &a = node.posts[face[k]], &b = node.posts[face[(k + 1) % 3]];
         if (a == b) return fmt::format("a face has an edge of no length at {}", nameOf(a));
         turn += a[0] * b[1] - b[0] * a[1];
-        if (++edges[{record.grid, a, b}] > 1)
-          return fmt::format("the edge {} {} is used twice in one direction", nameOf(a), nameOf(b));
+        const std::uint64_t from = numberOf(record.grid, a), to = numberOf(record.grid, b);
+        edges.push_back({std::min(from, to), std::max(from, to), from < to});
         const bool on_border = a[0] % span == 0 || a[1] % span == 0;
         if (!on_border || seen[face[k]]) continue;
         seen[face[k]] = true;
@@ -142,16 +152,27 @@ std::string findCrack(const Database& database, const CutMesh& mesh) {
     }
   }
   if (doubled_area != expected) return fmt::format("{} half cells are drawn, not {}", doubled_area, expected);
-  for (const auto& [edge, uses] : edges) {
-    if (edges.contains({edge.grid, edge.to, edge.from})) continue;
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const Edge& edge = edges[k];
+    const Post near = mesh.nodes.front().posts.front();
+    Post from = postOf(edge.low, near), to = postOf(edge.high, near);
+    if (k + 1 < edges.size() && edges[k + 1] == edge)
+      return fmt::format("the edge {} {} is used twice in one direction", nameOf(from), nameOf(to));
+    if (k + 1 < edges.size() && edges[k + 1].low == edge.low && edges[k + 1].high == edge.high) {
+      ++k;
+      continue;
+    }
     // Nothing may be drawn on its right.
-    const double dx = static_cast<double>(edge.to[0] - edge.from[0]),
-                 dy = static_cast<double>(edge.to[1] - edge.from[1]), size = std::hypot(dx, dy);
-    const double x = static_cast<double>(edge.from[0] + edge.to[0]) / 2 + dy / size * 1e-3,
-                 y = static_cast<double>(edge.from[1] + edge.to[1]) / 2 - dx / size * 1e-3;
-    if (drawnAt(mesh, index, edge.grid, x, y))
-      return fmt::format("nothing meets the edge {} {}, though something is drawn beyond it",
-                         nameOf(edge.from), nameOf(edge.to));
+    if (!edge.forward) std::swap(from, to);
+    const double dx = static_cast<double>(to[0] - from[0]), dy = static_cast<double>(to[1] - from[1]),
+                 size = std::hypot(dx, dy);
+    const double x = static_cast<double>(from[0] + to[0]) / 2 + dy / size * 1e-3,
+                 y = static_cast<double>(from[1] + to[1]) / 2 - dx / size * 1e-3;
+    if (drawnAt(mesh, index, static_cast<std::uint16_t>(edge.low >> 48), x, y)) {
+      return fmt::format("nothing meets the edge {} {}, though something is drawn beyond it", nameOf(from),
+                         nameOf(to));
+    }
   }
   return {};
 }
