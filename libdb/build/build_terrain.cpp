@@ -23,6 +23,8 @@ namespace {
 constexpr std::uint64_t kSegmentBytes = 64u << 20;
 // Nodes encoded at a time, so that packed blocks never pile up in memory.
 constexpr std::size_t kNodesPerBatch = 512;
+// The area's record has its heights in whole metres of 32 bits.
+constexpr double kMaximumAreaHeight = 2147483000.0;
 
 // A planned terrain node in the order of the files, and where its terrain went.
 struct OrderedNode {
@@ -54,6 +56,7 @@ class AreaBuild {
       done += share;
     }
     gatherArea();
+    for (const GridBuild& grid : grids_) DELTAZ_TRY(grid.checkExtent(bounds_.centroid));
     DELTAZ_TRY_ASSIGN(seams_, makeSeams(sources_));
     report("terrain", 0.6);
     DELTAZ_TRY(writeTerrain(publication));
@@ -304,7 +307,7 @@ class AreaBuild {
   std::vector<Seam> seams_;
 };
 
-Status checkGrids(std::span<const RawGrid> grids) {
+Status checkGrids(std::span<const RawGrid> grids, int leaf_cells) {
   constexpr std::size_t kMostGrids = 0xFFFF;
   if (grids.empty() || grids.size() > kMostGrids)
     return usageError("sources", fmt::format("{} grids do not make an area", grids.size()));
@@ -317,6 +320,24 @@ Status checkGrids(std::span<const RawGrid> grids) {
                       grids.front().header.ellipsoid.inverse_flattening, header.ellipsoid.semi_major_axis,
                       header.ellipsoid.inverse_flattening),
           "Bring all sources to one datum first");
+    }
+    // Before any tree is planned: what lies beyond has no place in a node record.
+    GridHeader leaves = header;
+    leaves.leaf_cells = leaf_cells;
+    const GridGeometry geometry(leaves);
+    for (const PostRange nodes : {geometry.nodeColumnsAt(0), geometry.nodeRowsAt(0)}) {
+      if (nodes.begin < INT32_MIN || nodes.end > INT32_MAX) {
+        return invalidError(IssueCode::kNone, "sources", "the posts stand too close to be numbered",
+                            fmt::format("leaves of {} cells would have numbers beyond 32 bits", leaf_cells),
+                            "Use larger leaves (--leaf)");
+      }
+    }
+    for (const std::int32_t height : grid.heights) {
+      if (std::abs(geometry.metres(height)) <= kMaximumAreaHeight) continue;
+      return invalidError(IssueCode::kNone, "sources",
+                          fmt::format("the elevation {} m is out of range", geometry.metres(height)),
+                          fmt::format("a database holds up to {} m", kMaximumAreaHeight),
+                          "Check the unit of the heights");
     }
     const bool projected = header.kind == "projected";
     const bool placed =
@@ -338,7 +359,7 @@ Result<BuildSummary> buildTerrain(const FileSystem& files, std::span<const RawGr
     return usageError("--leaf", fmt::format("{} cells", options.leaf_cells),
                       "a leaf has a power of two of cells a side, from 8 to 1024");
   }
-  DELTAZ_TRY(checkGrids(grids));
+  DELTAZ_TRY(checkGrids(grids, options.leaf_cells));
   try {
     return AreaBuild(files, grids, options).run(target);
   } catch (const std::bad_alloc&) {

@@ -168,6 +168,15 @@ Pierce coarseSurfaceAt(const CoarseWindow& window, std::int64_t column, std::int
   return best;
 }
 
+// Adds a square, or makes the sum the largest number there is: errors of kilometres at every post of a leaf.
+void addSquare(std::uint64_t& sum, double units) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  constexpr double kLargestRoot = 4294967295.0;
+  const std::uint64_t square =
+      units > kLargestRoot ? kMost : static_cast<std::uint64_t>(units) * static_cast<std::uint64_t>(units);
+  sum = square > kMost - sum ? kMost : sum + square;
+}
+
 }  // namespace
 
 std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& geometry, int level_count,
@@ -205,13 +214,13 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
         }
         maximum = std::max(maximum, difference);
         if (column < owned_column_end && row < owned_row_end) {
-          const auto units = static_cast<std::uint64_t>(std::llround(difference / kErrorUnit));
-          error.sum_of_squares += units * units;
+          addSquare(error.sum_of_squares, std::round(difference / kErrorUnit));
           ++error.posts;
         }
       }
     }
-    error.maximum = static_cast<std::uint32_t>(std::ceil(maximum / kErrorUnit));
+    error.maximum = static_cast<std::uint32_t>(
+        std::min(std::ceil(maximum / kErrorUnit), static_cast<double>(kUnknownError)));
   }
   return errors;
 }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 #include "libdb/build/coverage_error.h"
@@ -94,6 +97,30 @@ void GridBuild::gatherUpwards() {
   for (std::size_t i = levelBegin(plan_.level_count - 1); i < levelEnd(plan_.level_count - 1); ++i)
     top.push_back(facts_[i].summary.bounds);
   includeChildren(bounds_, top);
+}
+
+Status GridBuild::checkExtent(const std::array<std::int64_t, 3>& area) const {
+  const auto fits = [](const NodeBounds& bounds, const std::array<std::int64_t, 3>& parent) {
+    if (bounds.empty) return true;
+    if (bounds.radius == std::numeric_limits<std::uint32_t>::max()) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t offset = bounds.centroid[k] - parent[k];
+      if (offset < INT32_MIN || offset > INT32_MAX) return false;
+    }
+    return true;
+  };
+  bool all = fits(bounds_, area);
+  for (std::size_t i = 0; i < facts_.size() && all; ++i) {
+    const std::uint32_t parent = plan_.nodes[i].parent;
+    all = fits(facts_[i].summary.bounds,
+               parent == kNoNode ? bounds_.centroid : facts_[parent].summary.bounds.centroid);
+  }
+  if (all) return Success{};
+  return invalidError(IssueCode::kNone, "sources", "the area is too large for a database",
+                      fmt::format("its ground, or its heights of {} to {} m, reach farther than {} m",
+                                  geometry_.metres(bounds_.minimum_height),
+                                  geometry_.metres(bounds_.maximum_height), INT32_MAX * kCentroidUnit),
+                      "Check the unit of the heights, or cut the area (--bounds)");
 }
 
 double GridBuild::chordSagOfCoarsest() const {

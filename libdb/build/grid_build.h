@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/error.h"
 #include "formats/node_file.h"
 #include "formats/terrain_segment.h"
 #include "libdb/access/grid_geometry.h"
@@ -34,6 +35,9 @@ class GridBuild {
   void measureCoverage(WorkerPool& workers);
   // Bounds of children into parents, up to the whole grid.
   void gatherUpwards();
+
+  // kInvalid if some node reaches farther than its record can say. `area` is the centroid of the whole area.
+  Status checkExtent(const std::array<std::int64_t, 3>& area) const;
 
   // Of everything in the grid.
   const NodeBounds& bounds() const { return bounds_; }

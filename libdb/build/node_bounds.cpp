@@ -24,7 +24,9 @@ Vector3 fromCentroidUnits(const std::array<std::int64_t, 3>& units) {
 }
 
 std::uint32_t radiusUnits(double metres) {
-  return static_cast<std::uint32_t>(std::ceil(metres / kCentroidUnit + kRoundingGuard));
+  // What a record cannot hold becomes the largest value, which GridBuild::checkExtent refuses.
+  constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<std::uint32_t>(std::min(kMost, std::ceil(metres / kCentroidUnit + kRoundingGuard)));
 }
 
 std::array<std::int16_t, 3> packNormal(const Vector3& normal) {
