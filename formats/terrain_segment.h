@@ -39,7 +39,7 @@ struct TerrainBlock {
   std::uint16_t columns = 0, rows = 0;
   // First post, counted in the node's level from the node's south-west corner.
   std::uint16_t first_column = 0, first_row = 0;
-  double spacing_x = 0, spacing_y = 0;  // between posts of this level, degrees
+  double spacing_x = 0, spacing_y = 0;  // between posts of this level, in units of the axes
   Rational quantum;                     // metres
   Prediction predicted_from = Prediction::kNone;
   std::uint8_t normal_exponent = 2;

@@ -126,7 +126,7 @@ def statistics_have_every_member(folder):
         require(set(frame["samples"]) == {"tested", "written", "shaded"}, frame)
         require(set(frame["stages_ms"]) == {"schedule", "read", "objects", "raster", "resolve"}, frame)
         require(0 < frame["frame_ms"]["min"] <= frame["frame_ms"]["median"] <= frame["frame_ms"]["max"], frame)
-        for member in ("bytes_read", "posts_decoded", "depth_complexity", "level", "projected_error"):
+        for member in ("bytes_read", "posts_decoded", "depth_complexity", "level", "coarsest_level", "projected_error"):
             require(member in frame, frame)
         require(frame["bytes_read"] > 0 and frame["posts_decoded"] > 0 and frame["nodes"]["drawn"] > 0, frame)
 

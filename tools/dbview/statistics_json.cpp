@@ -59,6 +59,7 @@ Json frameJson(std::span<const FrameStatistics> repeats) {
   json["posts_decoded"] = first.posts_decoded;
   json["depth_complexity"] = finiteOrNull(first.depth_complexity);
   json["level"] = first.level;
+  json["coarsest_level"] = first.coarsest_level;
   json["projected_error"] = finiteOrNull(first.projected_error);
   json["stages_ms"] = stagesJson(repeats);
   const Spread total =
