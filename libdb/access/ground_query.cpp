@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "libdb/access/grid_locator.h"
+
 namespace deltaz {
 
 namespace {
@@ -77,48 +79,6 @@ std::optional<double> heightInTile(const TerrainTile& tile, const GridGeometry& 
 
 // The same on a projected grid, whose cells are found by going back from Earth-centred positions.
 
-// The cell of a projected grid over a place on the ellipsoid, by Newton's method on posts: the step from a
-// post is found from its neighbours. It may be the next cell, since cells bow; nothing if the place is far
-// from the grid.
-std::optional<std::array<std::int64_t, 2>> cellOver(const GridGeometry& geometry, const Vector3& foot) {
-  const PostRange columns = geometry.columnsAt(0), rows = geometry.rowsAt(0);
-  // Outside the lattice positions are extended, but not far: nothing is looked for beyond a tenth of the
-  // grid.
-  const auto within = [](std::int64_t index, PostRange range) {
-    const std::int64_t margin = range.size() / 10 + 2;
-    return std::clamp(index, range.begin - margin, range.end + margin);
-  };
-  std::int64_t column = (columns.begin + columns.end) / 2, row = (rows.begin + rows.end) / 2;
-  constexpr int kMostSteps = 20;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const Vector3 here = geometry.placeAt(column, row).foot;
-    const Vector3 east = geometry.placeAt(column + 1, row).foot - here;
-    const Vector3 north = geometry.placeAt(column, row + 1).foot - here;
-    const Vector3 offset = foot - here;
-    const double ee = dot(east, east), en = dot(east, north), nn = dot(north, north);
-    const double oe = dot(offset, east), on = dot(offset, north);
-    const double determinant = ee * nn - en * en;
-    if (!(determinant > 0)) return std::nullopt;
-    const double u = std::floor((oe * nn - on * en) / determinant);
-    const double v = std::floor((on * ee - oe * en) / determinant);
-    constexpr double kFarthestStep = 1e12;
-    if (!(std::abs(u) < kFarthestStep && std::abs(v) < kFarthestStep)) return std::nullopt;
-    const std::int64_t next_column = within(column + static_cast<std::int64_t>(u), columns);
-    const std::int64_t next_row = within(row + static_cast<std::int64_t>(v), rows);
-    if (std::abs(next_column - column) <= 1 && std::abs(next_row - row) <= 1) {
-      column = next_column;
-      row = next_row;
-      if (i > 0) break;
-      continue;
-    }
-    column = next_column;
-    row = next_row;
-  }
-  if (column < columns.begin - 1 || column > columns.end || row < rows.begin - 1 || row > rows.end)
-    return std::nullopt;
-  return std::array{column, row};
-}
-
 // Where the line foot + t * up meets the triangle a, b, c; `outside` becomes how far it passes, in
 // barycentric terms, 0 if it does not.
 double heightOnTriangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& foot,
@@ -145,15 +105,15 @@ Result<std::optional<double>> projectedHeight(const Database& database, const No
   const double highest = std::max(std::abs(geometry.metres(cluster.record.minimum_height)),
                                   std::abs(geometry.metres(cluster.record.maximum_height)));
   if (length(foot - cluster.centroid) > cluster.radius() + highest + 1) return std::optional<double>{};
-  const auto cell = cellOver(geometry, foot);
+  const std::optional<GridPlace> cell = GridLocator(geometry).locate(foot);
   if (!cell) return std::optional<double>{};
   // The cell that was found and those around it: the edges of facets bow, and the nearest hit wins.
   std::optional<double> best;
   constexpr double kOutside = 1e-6;  // of a facet, in barycentric terms
   double best_outside = kOutside;
   std::optional<TerrainTile> tile;
-  for (std::int64_t j = (*cell)[1] - 1; j <= (*cell)[1] + 1; ++j) {
-    for (std::int64_t i = (*cell)[0] - 1; i <= (*cell)[0] + 1; ++i) {
+  for (std::int64_t j = cell->row - 1; j <= cell->row + 1; ++j) {
+    for (std::int64_t i = cell->column - 1; i <= cell->column + 1; ++i) {
       const std::int64_t x = floorDivide(i, grid.leaf_cells), y = floorDivide(j, grid.leaf_cells);
       if (!tile || tile->x != x || tile->y != y) {
         DELTAZ_TRY_ASSIGN(const std::optional<Node> leaf, leafAt(database, cluster, x, y));

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "libdb/build/grid_locator.h"
+#include "libdb/access/grid_locator.h"
 #include "libdb/build/seam_builder.h"
 
 namespace deltaz {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/node_file.h"
-#include "libdb/build/plan_shape.h"
+#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libdb/build/plan_shape.h"
+#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 

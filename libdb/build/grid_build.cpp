@@ -9,7 +9,7 @@
 
 #include "libdb/build/coverage_error.h"
 #include "libdb/build/facet_error.h"
-#include "libdb/build/plan_shape.h"
+#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "libdb/build/face_cutter.h"
-#include "libdb/build/grid_locator.h"
+#include "libdb/access/grid_locator.h"
 
 namespace deltaz {
 

@@ -4,24 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+
+#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 namespace {
-
-// The bow is measured in the middle of edges at both ends of a node; between them it changes little.
-constexpr double kBowMargin = 1.25;
-
-// How far the middle of the chord between two posts lies beside the post between them, across the normal and
-// across the edge.
-double sidewaysBow(const GridGeometry& geometry, std::int64_t column, std::int64_t row, std::int64_t dx,
-                   std::int64_t dy) {
-  const Vector3 from = geometry.placeAt(column, row).foot, to = geometry.placeAt(column + dx, row + dy).foot;
-  const PostPlace middle = geometry.placeAt(column + dx / 2, row + dy / 2);
-  const Vector3 edge = to - from;
-  const Vector3 across = cross(edge, middle.up);
-  const double size = length(across);
-  return size > 0 ? std::abs(dot((from + to) * 0.5 - middle.foot, across)) / size : 0;
-}
 
 // The steepest slope the normals below a node can have: the angle of the cone's axis against the vertical of
 // the node's middle, and the cone.
@@ -43,26 +31,9 @@ StripErrors::StripErrors(const Database& database, const std::vector<CutNode>& n
     : database_(database), nodes_(nodes), index_(index) {}
 
 double StripErrors::bow(const NodeRecord& record) const {
-  const GridGeometry& geometry = database_.grid(record.grid);
-  const GridHeader& header = geometry.header();
-  const std::int64_t step = std::int64_t{1} << record.level;
-  const std::int64_t span = header.leaf_cells * step;
-  const auto inside = [&](std::int64_t post, const GridAxis& axis) {
-    return std::clamp(post, axis.first, std::max(axis.first, axis.first + axis.count - 1 - step));
-  };
-  const std::int64_t west = inside(record.x * span, header.x_axis),
-                     east = inside((record.x + 1) * span - step, header.x_axis);
-  const std::int64_t south = inside(record.y * span, header.y_axis),
-                     north = inside((record.y + 1) * span - step, header.y_axis);
-  double largest = 0;
-  for (const std::int64_t column : {west, east}) {
-    for (const std::int64_t row : {south, north}) {
-      largest = std::max(largest, sidewaysBow(geometry, column, row, step, 0));
-      // The meridians of a geodetic grid are plane curves that hold the normals: no bow.
-      if (!geometry.isGeodetic()) largest = std::max(largest, sidewaysBow(geometry, column, row, 0, step));
-    }
-  }
-  return largest * kBowMargin;
+  const auto [found, fresh] = bows_.emplace(std::pair{record.grid, record.level}, 0.0);
+  if (fresh) found->second = sidewaysBow(database_.grid(record.grid), record.level);
+  return found->second;
 }
 
 double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const {

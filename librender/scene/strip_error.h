@@ -6,9 +6,13 @@
 // ellipsoid normal, plus the displacement of the edge's ends where still coarser nodes move those; and
 // sideways by the bow of the edge, a chord in space, against the line of posts under it. Inside the strip the
 // surface is the node's own plus the interpolated displacement, hence the sum.
+//
+// Thread-safety: one thread at a time.
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "librender/scene/cut.h"
@@ -27,11 +31,13 @@ class StripErrors {
  private:
   // Largest displacement of post (column, row), which node `owner` has, by coarser nodes that touch it.
   double displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const;
+  // plan_shape.h's, of the node's level.
   double bow(const NodeRecord& record) const;
 
   const Database& database_;
   const std::vector<CutNode>& nodes_;
   const CutIndex& index_;
+  mutable std::map<std::pair<std::uint16_t, std::uint8_t>, double> bows_;
 };
 
 }  // namespace deltaz

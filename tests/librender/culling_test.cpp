@@ -11,11 +11,6 @@
 namespace deltaz {
 namespace {
 
-int viewsPerArea(int by_default) {
-  const char* const wanted = std::getenv("DELTAZ_VIEWS");
-  return wanted != nullptr ? std::atoi(wanted) : by_default;
-}
-
 std::vector<SyntheticGridOptions> areas() {
   std::vector<SyntheticGridOptions> result(4, smallArea());
   result[1].voids = VoidPattern::kHole;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <map>
 #include <stdexcept>
 
-#include "libdb/build/grid_locator.h"
+#include "libdb/access/grid_locator.h"
 #include "librender/scene/view_volume.h"
 #include "tests/librender/test_databases.h"
 
@@ -340,6 +341,11 @@ ContractFinding measureContract(const Database& database, const CutMesh& mesh, c
     }
   }
   return finding;
+}
+
+int viewsPerArea(int by_default) {
+  const char* const wanted = std::getenv("DELTAZ_VIEWS");
+  return wanted != nullptr ? std::atoi(wanted) : by_default;
 }
 
 Camera randomView(const Database& database, std::mt19937& random, int width, int height) {

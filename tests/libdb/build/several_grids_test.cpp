@@ -10,7 +10,7 @@
 #include "libdb/access/vertex_normals.h"
 #include "libdb/build/area_bounds.h"
 #include "libdb/build/build_terrain.h"
-#include "libdb/build/plan_shape.h"
+#include "libdb/access/plan_shape.h"
 #include "libdb/check/check.h"
 #include "tests/support/projected_grid.h"
 #include "tests/support/synthetic_grid.h"

@@ -14,11 +14,6 @@
 namespace deltaz {
 namespace {
 
-int viewsPerArea(int by_default) {
-  const char* const wanted = std::getenv("DELTAZ_VIEWS");
-  return wanted != nullptr ? std::atoi(wanted) : by_default;
-}
-
 struct Outcome {
   int views = 0;
   std::uint64_t faces = 0;

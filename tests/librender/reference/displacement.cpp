@@ -1,4 +1,4 @@
-#include "librender/reference/displacement.h"
+#include "tests/librender/reference/displacement.h"
 
 #include <algorithm>
 #include <cmath>

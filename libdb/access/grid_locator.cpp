@@ -1,4 +1,4 @@
-#include "libdb/build/grid_locator.h"
+#include "libdb/access/grid_locator.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "libdb/build/plan_shape.h"
+#include "libdb/access/plan_shape.h"
 
 #include <algorithm>
 #include <array>
