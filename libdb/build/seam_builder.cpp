@@ -6,8 +6,8 @@
 #include <map>
 #include <unordered_map>
 
-#include "libdb/build/face_cutter.h"
 #include "libdb/access/grid_locator.h"
+#include "libdb/build/face_cutter.h"
 
 namespace deltaz {
 
@@ -243,8 +243,10 @@ class SeamMaker {
   };
   Stretch stretchOver(const GridPlace& a, const GridPlace& b) const {
     const std::int64_t column = std::min(a.column, b.column), row = std::min(a.row, b.row);
-    const double ax = static_cast<double>(a.column - column) + a.x, ay = static_cast<double>(a.row - row) + a.y;
-    const double bx = static_cast<double>(b.column - column) + b.x, by = static_cast<double>(b.row - row) + b.y;
+    const double ax = static_cast<double>(a.column - column) + a.x,
+                 ay = static_cast<double>(a.row - row) + a.y;
+    const double bx = static_cast<double>(b.column - column) + b.x,
+                 by = static_cast<double>(b.row - row) + b.y;
     const double x = (ax + bx) / 2, y = (ay + by) / 2, i = std::floor(x), j = std::floor(y);
     // Both ends on one line of the grid, exactly: so is what lies between.
     const auto on_line = [](double from, double to) { return from == to && from == std::floor(from); };
@@ -256,7 +258,8 @@ class SeamMaker {
       middle.row += row;
       stretch.over_ground = !facesAt(middle).empty();
     } else {
-      stretch.face = {row + static_cast<std::int64_t>(j), column + static_cast<std::int64_t>(i), y - j > x - i};
+      stretch.face = {row + static_cast<std::int64_t>(j), column + static_cast<std::int64_t>(i),
+                      y - j > x - i};
       stretch.over_ground = lower_.isValid(stretch.face);
     }
     return stretch;
