@@ -80,10 +80,10 @@ CellSize largestProjectedCell(const GridGeometry& geometry, PostRange columns, P
   return {boundOf(widths, xs.size()) * skew, boundOf(heights, xs.size()) * skew};
 }
 
-double geodeticBow(const GridGeometry& geometry, int level) {
+double geodeticBow(const GridGeometry& geometry, int level, PostRange rows) {
   const GridHeader& header = geometry.header();
-  const double south = geometry.latitude(header.y_axis.first) * kRadians;
-  const double north = geometry.latitude(header.y_axis.first + header.y_axis.count - 1) * kRadians;
+  const double south = geometry.latitude(rows.begin) * kRadians;
+  const double north = geometry.latitude(rows.end - 1) * kRadians;
   const double largest_sine = std::max(std::abs(std::sin(south)), std::abs(std::sin(north)));
   const double largest_cosine = south <= 0 && north >= 0 ? 1.0 : std::max(std::cos(south), std::cos(north));
   const double scale = static_cast<double>(std::int64_t{1} << level) * kRadians;
@@ -92,7 +92,8 @@ double geodeticBow(const GridGeometry& geometry, int level) {
          std::hypot(largest_cosine * width, 2 * height);
 }
 
-double projectedBow(const GridGeometry& geometry, int level) {
+// Of an edge of one post, without the error of the control points.
+double projectedBow(const GridGeometry& geometry) {
   // A regular net over the area, a little beyond it where that takes fewer than four samples.
   const PostRange all_columns = geometry.columnsAt(0), all_rows = geometry.rowsAt(0);
   int net_level = 0;
@@ -126,8 +127,8 @@ double projectedBow(const GridGeometry& geometry, int level) {
       }
     }
   }
-  const double edge = static_cast<double>(std::int64_t{1} << level) / static_cast<double>(step);
-  return 1.25 * (acceleration + change) * edge * edge / 8 + 2 * geometry.patches()->placement.error;
+  const double edge = 1 / static_cast<double>(step);
+  return 1.25 * (acceleration + change) * edge * edge / 8;
 }
 
 double angleBetween(const Vector3& a, const Vector3& b) {
@@ -166,8 +167,22 @@ CellSize largestCell(const GridGeometry& geometry, PostRange columns, PostRange 
                                : largestProjectedCell(geometry, columns, rows);
 }
 
-double sidewaysBow(const GridGeometry& geometry, int level) {
-  return geometry.isGeodetic() ? geodeticBow(geometry, level) : projectedBow(geometry, level);
+SidewaysBow::SidewaysBow(const GridGeometry& geometry) : geometry_(geometry) {
+  if (geometry.isGeodetic()) return;
+  of_one_post_ = projectedBow(geometry);
+  of_patches_ = 2 * geometry.patches()->placement.error;
+}
+
+double SidewaysBow::at(int level, PostRange rows) const {
+  if (geometry_.isGeodetic()) return geodeticBow(geometry_, level, rows);
+  const double posts = static_cast<double>(std::int64_t{1} << level);
+  return of_one_post_ * posts * posts + of_patches_;
+}
+
+bool coversGround(const Vector3& foot_a, const Vector3& foot_b, const Vector3& foot_c) {
+  constexpr double kDegenerate = 1e-12;
+  const Vector3 ab = foot_b - foot_a, ac = foot_c - foot_a;
+  return length(cross(ab, ac)) > kDegenerate * std::max(dot(ab, ab), dot(ac, ac));
 }
 
 double chordSag(const GridGeometry& geometry, int level, double highest) {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "libdb/access/plan_shape.h"
-
 namespace deltaz {
 
 namespace {
@@ -223,17 +221,6 @@ std::vector<AncestorError> leafErrors(const RawGrid& grid, const GridGeometry& g
         std::min(std::ceil(maximum / kErrorUnit), static_cast<double>(kUnknownError)));
   }
   return errors;
-}
-
-double betweenPostsSlack(const GridGeometry& geometry, int level, const std::vector<double>& steepest) {
-  const double fine_diagonal = largestCell(geometry, geometry.columnsAt(0), geometry.rowsAt(0)).diagonal();
-  const double g0 = steepest[0];
-  // The smallest radius of curvature there is: the meridian's at the equator.
-  const EllipsoidShape& ellipsoid = geometry.header().ellipsoid;
-  const double axes = ellipsoid.inverse_flattening == 0 ? 1 : 1 - 1 / ellipsoid.inverse_flattening;
-  const double radius = ellipsoid.semi_major_axis * axes * axes;
-  const double within_facet = (1 + 2 * g0 * g0) * fine_diagonal * fine_diagonal / (8 * radius);
-  return within_facet + 4 * steepest[static_cast<std::size_t>(level)] * sidewaysBow(geometry, level);
 }
 
 }  // namespace deltaz

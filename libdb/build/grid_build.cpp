@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "libdb/access/plan_shape.h"
 #include "libdb/build/coverage_error.h"
 #include "libdb/build/facet_error.h"
-#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 
@@ -29,7 +29,8 @@ GridBuild::GridBuild(const RawGrid& grid, int leaf_cells)
     : grid_(grid),
       geometry_(preparedHeader(grid, leaf_cells), grid.patches),
       plan_(planPyramid(geometry_)),
-      facts_(plan_.nodes.size()) {}
+      facts_(plan_.nodes.size()),
+      between_posts_(geometry_) {}
 
 TerrainTile GridBuild::tileOf(std::size_t node) const {
   const PlannedNode& planned = plan_.nodes[node];
@@ -39,14 +40,10 @@ TerrainTile GridBuild::tileOf(std::size_t node) const {
 void GridBuild::measureTiles(WorkerPool& workers) {
   workers.forEach(plan_.nodes.size(),
                   [&](std::size_t i) { facts_[i].summary = summarizeTile(tileOf(i), geometry_); });
-  std::vector<double> steepest(static_cast<std::size_t>(plan_.level_count), 0.0);
   for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-    double& of_level = steepest[static_cast<std::size_t>(plan_.nodes[i].level)];
-    of_level = std::max(of_level, facts_[i].summary.steepest);
+    const PlannedNode& node = plan_.nodes[i];
+    between_posts_.addSteepest(node.level, node.x, node.y, facts_[i].summary.steepest);
   }
-  slack_.assign(steepest.size(), 0.0);
-  for (int level = 1; level < plan_.level_count; ++level)
-    slack_[static_cast<std::size_t>(level)] = betweenPostsSlack(geometry_, level, steepest);
 }
 
 void GridBuild::measureErrors(WorkerPool& workers) {
@@ -180,7 +177,7 @@ void GridBuild::putErrors(NodeRecord& record, const PlannedNode& node, const Nod
   }
   // A node that draws nothing has no error that could be bounded.
   if (facts.summary.facets == 0) return;
-  const double slack = slack_[static_cast<std::size_t>(node.level)] / kErrorUnit;
+  const double slack = between_posts_.slack(node.level, node.x, node.y) / kErrorUnit;
   const double error = std::ceil(static_cast<double>(facts.maximum_error) + slack);
   if (error < static_cast<double>(kUnknownError)) record.geometric_error = static_cast<std::uint32_t>(error);
   if (facts.compared_posts > 0) {

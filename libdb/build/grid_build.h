@@ -9,6 +9,7 @@
 #include "formats/error.h"
 #include "formats/node_file.h"
 #include "formats/terrain_segment.h"
+#include "libdb/access/between_posts.h"
 #include "libdb/access/grid_geometry.h"
 #include "libdb/build/node_bounds.h"
 #include "libdb/build/pyramid.h"
@@ -21,6 +22,8 @@ class GridBuild {
  public:
   // `grid` must outlive it.
   GridBuild(const RawGrid& grid, int leaf_cells);
+  GridBuild(const GridBuild&) = delete;
+  GridBuild& operator=(const GridBuild&) = delete;
 
   const RawGrid& source() const { return grid_; }
   const GridHeader& header() const { return geometry_.header(); }
@@ -67,7 +70,7 @@ class GridBuild {
   GridGeometry geometry_;
   PyramidPlan plan_;
   std::vector<NodeFacts> facts_;  // by index into plan_.nodes
-  std::vector<double> slack_;     // between posts, by level, metres
+  BetweenPosts between_posts_;
   NodeBounds bounds_;
 };
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "libdb/access/plan_shape.h"
+
 namespace deltaz {
 
 namespace {
@@ -98,7 +100,9 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
   double farthest = 0;
   Vector3 normal_sum;
   std::vector<Vector3> normals;
-  const auto addFacet = [&](const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& up) {
+  const auto addFacet = [&](std::array<int, 2> at_a, std::array<int, 2> at_b, std::array<int, 2> at_c,
+                            const Vector3& up) {
+    const Vector3 a = place(at_a[0], at_a[1]), b = place(at_b[0], at_b[1]), c = place(at_c[0], at_c[1]);
     const Vector3 normal = cross(b - a, c - a);
     const double size = length(normal);
     if (!(size > 0)) return;
@@ -108,7 +112,11 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
     const double rise = dot(normals.back(), up);
     const double slope =
         rise > 0 ? length(cross(normals.back(), up)) / rise : std::numeric_limits<double>::infinity();
-    summary.steepest = std::max(summary.steepest, slope);
+    // Looked at last, since hardly a facet is steeper than all before it.
+    if (slope > summary.steepest &&
+        coversGround(placeOf(at_a[0], at_a[1]).foot, placeOf(at_b[0], at_b[1]).foot,
+                     placeOf(at_c[0], at_c[1]).foot))
+      summary.steepest = slope;
   };
   for (int j = 0; j < tile.rows; ++j) {
     for (int i = 0; i < tile.columns; ++i) {
@@ -116,8 +124,8 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
       farthest = std::max(farthest, length(place(i, j) - centre));
       if (i + 1 >= tile.columns || j + 1 >= tile.rows) continue;
       const Vector3& up = placeOf(i, j).up;
-      if (tile.bottomFaceValid(i, j)) addFacet(place(i, j), place(i + 1, j), place(i + 1, j + 1), up);
-      if (tile.topFaceValid(i, j)) addFacet(place(i, j), place(i + 1, j + 1), place(i, j + 1), up);
+      if (tile.bottomFaceValid(i, j)) addFacet({i, j}, {i + 1, j}, {i + 1, j + 1}, up);
+      if (tile.topFaceValid(i, j)) addFacet({i, j}, {i + 1, j + 1}, {i, j + 1}, up);
     }
   }
   bounds.radius = radiusUnits(farthest);

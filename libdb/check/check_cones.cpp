@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "libdb/access/plan_shape.h"
 #include "libdb/access/vertex_normals.h"
 #include "libdb/check/check_geometry.h"
 #include "libdb/check/parallel_report.h"
@@ -55,10 +56,9 @@ class ConeRule {
     parallelReport(context.report, nodes_.size(), 8, [&](std::size_t item, Report& report) {
       checkNode(nodes_[item], steepest[item], report);
     });
-    check_.steepest.assign(static_cast<std::size_t>(geometry_.header().level_count), 0.0);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      double& of_level = check_.steepest[context.record(nodes_[i]).level];
-      of_level = std::max(of_level, steepest[i]);
+      const NodeRecord& record = context.record(nodes_[i]);
+      check_.between_posts.addSteepest(record.level, record.x, record.y, steepest[i]);
     }
     checkWidths();
   }
@@ -88,8 +88,9 @@ class ConeRule {
       normals.push_back(normal * (1 / size));
       const Vector3& up = places[south_west].up;
       const double rise = dot(normals.back(), up);
-      steepest = std::max(steepest, rise > 0 ? length(cross(normals.back(), up)) / rise
-                                             : std::numeric_limits<double>::infinity());
+      const double slope =
+          rise > 0 ? length(cross(normals.back(), up)) / rise : std::numeric_limits<double>::infinity();
+      if (slope > steepest && coversGround(places[a].foot, places[b].foot, places[c].foot)) steepest = slope;
     };
     for (std::int64_t row = tile->rows.begin; row + 1 < tile->rows.end; ++row) {
       for (std::int64_t column = tile->columns.begin; column + 1 < tile->columns.end; ++column) {

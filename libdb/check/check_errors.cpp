@@ -211,9 +211,6 @@ class ErrorRule {
   }
 
   void compareNodes() {
-    std::vector<double> slack(static_cast<std::size_t>(levels_), 0.0);
-    for (int level = 1; level < levels_; ++level)
-      slack[static_cast<std::size_t>(level)] = betweenPostsSlack(geometry_, level, check_.steepest);
     for (const std::uint32_t number : check_.nodesOf(-1)) {
       const NodeRecord& record = check_.context.record(number);
       if (record.level == 0 || record.isEmpty()) {
@@ -232,7 +229,8 @@ class ErrorRule {
           complain(IssueCode::kErrRms, number, "it draws nothing, so its RMS error is unknown", 0);
         continue;
       }
-      compareMaximum(number, record, of_nodes_[number], slack[record.level]);
+      compareMaximum(number, record, of_nodes_[number],
+                     check_.between_posts.slack(record.level, record.x, record.y));
       compareRms(number, record, of_nodes_[number]);
     }
   }

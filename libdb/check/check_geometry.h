@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libdb/access/between_posts.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/full_grid.h"
 #include "libdb/check/tile_loader.h"
@@ -18,9 +19,9 @@ struct GeometryCheck {
   TileLoader& loader;
   std::uint16_t grid = 0;
   const FullGrid& full;
-  // Found by checkCones: the steepest facet of each level (tangent of its slope), and by record number
-  // whether a node draws any facet itself.
-  std::vector<double> steepest = {};
+  // Found by checkCones: the steepest facet of each node, and by record number whether a node draws any facet
+  // itself.
+  BetweenPosts between_posts = BetweenPosts(context.grids[grid]);
   std::vector<std::uint8_t> has_facets = {};
 
   const GridGeometry& geometry() const { return context.grids[grid]; }

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
-
-#include "libdb/access/plan_shape.h"
 
 namespace deltaz {
 namespace {
@@ -31,9 +28,12 @@ StripErrors::StripErrors(const Database& database, const std::vector<CutNode>& n
     : database_(database), nodes_(nodes), index_(index) {}
 
 double StripErrors::bow(const NodeRecord& record) const {
-  const auto [found, fresh] = bows_.emplace(std::pair{record.grid, record.level}, 0.0);
-  if (fresh) found->second = sidewaysBow(database_.grid(record.grid), record.level);
-  return found->second;
+  const GridGeometry& geometry = database_.grid(record.grid);
+  const auto found = bows_.try_emplace(record.grid, geometry).first;
+  const std::int64_t span = geometry.header().leaf_cells * (std::int64_t{1} << record.level);
+  const PostRange all = geometry.rowsAt(0);
+  return found->second.at(record.level, {std::max(all.begin, record.y * span),
+                                         std::min(all.end, (std::int64_t{record.y} + 1) * span + 1)});
 }
 
 double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const {

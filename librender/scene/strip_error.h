@@ -12,9 +12,9 @@
 
 #include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
+#include "libdb/access/plan_shape.h"
 #include "librender/scene/cut.h"
 
 namespace deltaz {
@@ -31,13 +31,13 @@ class StripErrors {
  private:
   // Largest displacement of post (column, row), which node `owner` has, by coarser nodes that touch it.
   double displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const;
-  // plan_shape.h's, of the node's level.
+  // Of the node's edges, metres.
   double bow(const NodeRecord& record) const;
 
   const Database& database_;
   const std::vector<CutNode>& nodes_;
   const CutIndex& index_;
-  mutable std::map<std::pair<std::uint16_t, std::uint8_t>, double> bows_;
+  mutable std::map<std::uint16_t, SidewaysBow> bows_;  // by grid
 };
 
 }  // namespace deltaz

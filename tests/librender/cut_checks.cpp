@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "libdb/access/grid_locator.h"
+#include "libdb/access/plan_shape.h"
 #include "librender/scene/view_volume.h"
 #include "tests/librender/test_databases.h"
 
@@ -61,6 +63,44 @@ bool drawnAt(const CutMesh& mesh, const CutIndex& index, std::uint16_t grid, dou
   const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
   if (i < 0 || j < 0 || i + 1 >= tile.columns || j + 1 >= tile.rows) return false;
   return u - i > v - j ? tile.bottomFaceValid(i, j) : tile.topFaceValid(i, j);
+}
+
+// Where the line post + t * up meets the plane of a face, and how far inside the face that is: the smallest
+// barycentric coordinate.
+struct Meeting {
+  Vector3 place;
+  double inside = 0;
+};
+Meeting meet(const MeshNode& node, const std::array<std::uint32_t, 3>& face, const Vector3& post,
+             const Vector3& up) {
+  const Vector3 &a = node.vertices.position[face[0]], &b = node.vertices.position[face[1]],
+                &c = node.vertices.position[face[2]];
+  const Vector3 normal = cross(b - a, c - a);
+  const Vector3 place = post + up * (dot(normal, a - post) / dot(normal, up));
+  const auto share = [&](const Vector3& from, const Vector3& to) {
+    return dot(cross(to - from, place - from), normal) / dot(normal, normal);
+  };
+  return {place, std::min({share(a, b), share(b, c), share(c, a)})};
+}
+
+// The node's face that a vertical line meets, or comes nearest to: where faces stand on a pole, the one that
+// indices name may be a wall, and the ground is another's.
+std::array<std::uint32_t, 3> faceOver(const MeshNode& node, const Vector3& post, const Vector3& up) {
+  std::array<std::uint32_t, 3> best = {};
+  double inside = -std::numeric_limits<double>::infinity();
+  for (const auto& face : node.faces) {
+    // A wall seen edge on is met nowhere in particular.
+    constexpr double kWall = 1e-9;
+    const Vector3 &a = node.vertices.position[face[0]], &b = node.vertices.position[face[1]],
+                  &c = node.vertices.position[face[2]];
+    const Vector3 normal = cross(b - a, c - a);
+    if (std::abs(dot(normal, up)) <= kWall * length(normal) * length(up)) continue;
+    const Meeting meeting = meet(node, face, post, up);
+    if (!(meeting.inside > inside)) continue;
+    inside = meeting.inside;
+    best = face;
+  }
+  return best;
 }
 
 }  // namespace
@@ -293,6 +333,9 @@ ContractFinding measureContract(const Database& database, const CutMesh& mesh, c
     const std::size_t own_posts =
         static_cast<std::size_t>(node.vertices.columns) * static_cast<std::size_t>(node.vertices.rows);
     const std::int64_t span = geometry.header().leaf_cells * (std::int64_t{1} << cut.node.record.level);
+    const PostRange rows = geometry.rowsAt(0);
+    const bool reaches_pole = geometry.isGeodetic() && (std::abs(geometry.latitude(rows.begin)) == 90 ||
+                                                        std::abs(geometry.latitude(rows.end - 1)) == 90);
     if (cut.node.record.level == 0) {
       bool beside_coarser = false;
       for (const Side side : kSides) {
@@ -309,9 +352,9 @@ ContractFinding measureContract(const Database& database, const CutMesh& mesh, c
         const Post& post = node.posts[vertex];
         strip = strip || vertex >= own_posts || post[0] % span == 0 || post[1] % span == 0;
       }
-      const Vector3 &pa = node.vertices.position[face[0]], &pb = node.vertices.position[face[1]],
-                    &pc = node.vertices.position[face[2]];
-      const Vector3 normal = cross(pb - pa, pc - pa);
+      const bool wall =
+          reaches_pole && !coversGround(geometry.placeAt(a[0], a[1]).foot, geometry.placeAt(b[0], b[1]).foot,
+                                        geometry.placeAt(c[0], c[1]).foot);
       const auto side_of = [](const Post& from, const Post& to, std::int64_t x, std::int64_t y) {
         return (to[0] - from[0]) * (y - from[1]) - (to[1] - from[1]) * (x - from[0]);
       };
@@ -327,9 +370,8 @@ ContractFinding measureContract(const Database& database, const CutMesh& mesh, c
               std::abs(post.z / post.x) > view.height / 2.0)
             continue;
           const Vector3 up = to_view(place.up);
-          const double rise = dot(normal, pa - post) / dot(normal, up);
-          if (!std::isfinite(rise)) continue;
-          const Vector3 drawn = post + up * rise;
+          const Vector3 drawn = meet(node, wall ? faceOver(node, post, up) : face, post, up).place;
+          if (!std::isfinite(drawn.x)) continue;
           const double pixels = drawn.x > 0 ? std::hypot(drawn.y / drawn.x - post.y / post.x,
                                                          drawn.z / drawn.x - post.z / post.x)
                                             : HUGE_VAL;

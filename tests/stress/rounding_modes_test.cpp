@@ -10,6 +10,7 @@
 #include <immintrin.h>
 #endif
 
+#include "libdb/access/between_posts.h"
 #include "libdb/access/database.h"
 #include "libdb/build/facet_error.h"
 #include "libdb/build/node_bounds.h"
@@ -150,25 +151,27 @@ TEST_P(RoundingModes, positions_keep_their_bounds_and_the_contract) {
 struct Measured {
   std::vector<TileSummary> summaries;                   // by node
   std::vector<std::vector<AncestorError>> leaf_errors;  // by leaf
-  std::vector<double> slack;                            // by level; metres
+  std::vector<std::vector<double>> slack;               // by leaf: of its ancestors, metres
 };
 
 Measured measure(const RawGrid& grid, const GridGeometry& geometry, const PyramidPlan& plan,
                  const Mode& mode) {
   const InMode in_mode(mode);
   Measured measured;
-  std::vector<double> steepest(static_cast<std::size_t>(plan.level_count), 0.0);
+  BetweenPosts between_posts(geometry);
   for (const PlannedNode& node : plan.nodes) {
     measured.summaries.push_back(
         summarizeTile(cutTile(grid, geometry, node.level, node.x, node.y), geometry));
-    double& of_level = steepest[static_cast<std::size_t>(node.level)];
-    of_level = std::max(of_level, measured.summaries.back().steepest);
+    between_posts.addSteepest(node.level, node.x, node.y, measured.summaries.back().steepest);
     if (node.level == 0)
       measured.leaf_errors.push_back(leafErrors(grid, geometry, plan.level_count, node.x, node.y));
   }
-  measured.slack.push_back(0);
-  for (int level = 1; level < plan.level_count; ++level)
-    measured.slack.push_back(betweenPostsSlack(geometry, level, steepest));
+  for (const PlannedNode& node : plan.nodes) {
+    if (node.level != 0) continue;
+    std::vector<double>& of_ancestors = measured.slack.emplace_back();
+    for (int level = 1; level < plan.level_count; ++level)
+      of_ancestors.push_back(between_posts.slack(level, node.x >> level, node.y >> level));
+  }
   return measured;
 }
 
@@ -190,9 +193,7 @@ double outsideSphere(const TerrainTile& tile, const GridGeometry& geometry, cons
   return outside;
 }
 
-// Errors and spheres measured in any mode are never too small for the usual one. Where the slack is infinite,
-// as it is beside facets that stand upright on a pole, the error is stored as unknown and nothing is
-// promised.
+// Errors and spheres measured in any mode are never too small for the usual one.
 TEST_P(RoundingModes, errors_and_spheres_are_never_too_small) {
   for (const NamedGrid& named : someGrids()) {
     GridHeader header = named.grid.header;
@@ -211,8 +212,7 @@ TEST_P(RoundingModes, errors_and_spheres_are_never_too_small) {
     double short_of = 0;
     for (std::size_t leaf = 0; leaf < usual.leaf_errors.size(); ++leaf) {
       for (std::size_t k = 0; k < usual.leaf_errors[leaf].size(); ++k) {
-        if (!std::isfinite(there.slack[k + 1])) continue;
-        const double stored = there.leaf_errors[leaf][k].maximum * kErrorUnit + there.slack[k + 1];
+        const double stored = there.leaf_errors[leaf][k].maximum * kErrorUnit + there.slack[leaf][k];
         short_of = std::max(short_of, usual.leaf_errors[leaf][k].maximum * kErrorUnit - stored);
       }
     }

@@ -1,10 +1,10 @@
 #include "libdb/build/build_terrain.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 
 #include "libdb/access/database.h"
-#include "libdb/check/check.h"
 #include "libdb/export/export_terrain.h"
 #include "tests/support/synthetic_grid.h"
 
@@ -125,6 +125,20 @@ TEST(BuildTerrain, a_leaf_size_that_cannot_be_is_refused) {
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().kind, ErrorKind::kUsage);
   }
+}
+
+// Facets with two posts on the pole stand upright, with a slope beyond all bounds; they cover nothing.
+TEST(BuildTerrain, a_grid_that_reaches_a_pole_has_levels_of_detail) {
+  SyntheticGridOptions options;
+  options.south = 80;
+  options.spacing_latitude = options.spacing_longitude = {300, 1};
+  options.columns = options.rows = 121;
+  const MemoryFileSystem files = buildInMemory(syntheticGrid(options), {.leaf_cells = 8});
+  const Result<Database> database = Database::open(files, kMemoryDatabasePath);
+  ASSERT_TRUE(database.ok());
+  const Result<std::vector<Node>> nodes = nodesOfLevel(database.value(), 0, 1);
+  ASSERT_TRUE(nodes.ok());
+  for (const Node& node : nodes.value()) EXPECT_TRUE(std::isfinite(node.geometricError()));
 }
 
 }  // namespace

@@ -139,7 +139,8 @@ class Sampler {
   std::atomic<std::uint64_t> exceeded_ = 0;
 };
 
-void expectNeverExceeded(const std::string& name, const RawGrid& grid) {
+// `least_share` is how much of the stored error must be seen, for a bound far off says nothing.
+void expectNeverExceeded(const std::string& name, const RawGrid& grid, double least_share = 0.5) {
   const MemoryFileSystem files = buildInMemory(grid);
   Result<Database> database = Database::open(files, kMemoryDatabasePath);
   ASSERT_TRUE(database.ok()) << database.error().message();
@@ -150,7 +151,7 @@ void expectNeverExceeded(const std::string& name, const RawGrid& grid) {
                 name.c_str(), level, static_cast<unsigned long long>(seen[level].samples), seen[level].stored,
                 seen[level].observed, seen[level].observed / seen[level].stored);
     EXPECT_GT(seen[level].samples, 0u);
-    EXPECT_GT(seen[level].observed, 0.5 * seen[level].stored) << "a bound so far off says nothing";
+    EXPECT_GT(seen[level].observed, least_share * seen[level].stored);
   }
   EXPECT_EQ(sampler.exceeded(), 0u);
 }
@@ -166,6 +167,16 @@ TEST_P(SyntheticAt, no_dense_sample_exceeds_a_stored_error) {
   options.columns = options.rows = 600;
   options.voids = VoidPattern::kHole;
   expectNeverExceeded("latitude " + std::to_string(GetParam()), syntheticGrid(options));
+}
+
+TEST(DenseSamples, beside_and_on_a_pole_exceed_no_stored_error) {
+  SyntheticGridOptions options;
+  options.south = 85;
+  options.spacing_latitude = {60, 1};
+  options.spacing_longitude = {300, 1};
+  options.columns = options.rows = 301;
+  // Slivers of 2 m beside the pole are steep, and steep facets have much room between posts.
+  expectNeverExceeded("to the pole", syntheticGrid(options), 0.25);
 }
 
 TEST(DenseSamples, of_a_projected_grid_exceed_no_stored_error) {
