@@ -8,7 +8,7 @@ namespace deltaz {
 namespace {
 
 // Grows with every change of what is hashed, so that digests of different definitions never agree by chance.
-constexpr std::uint32_t kDigestVersion = 2;
+constexpr std::uint32_t kDigestVersion = 3;
 
 // Values as little-endian bytes, one after the other.
 class DigestBytes {
@@ -162,6 +162,8 @@ Result<Hash128> contentDigest(const Database& database) {
   for (int grid = 0; grid < database.gridCount(); ++grid) {
     if (const auto& patches = database.grid(grid).patches()) addPatches(bytes, *patches);
   }
+  bytes.add(static_cast<std::uint32_t>(database.seams().size()));
+  for (const Seam& seam : database.seams()) bytes.add(hash128(encodeSeam(seam)));
   DELTAZ_TRY_ASSIGN(const Node root, database.root());
   DELTAZ_TRY_ASSIGN(const Hash128 tree, digestOf(database, root));
   bytes.add(tree);
