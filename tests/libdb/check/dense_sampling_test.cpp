@@ -1,7 +1,7 @@
 // Stored geometric errors against dense samples of the full-resolution surface: points of its facets, at
 // random all over an area, never lie farther from any coarser level than the node over them says.
 //
-// The default takes 100 000 points an area; DELTAZ_SOAK_POINTS asks for another number (scripts/soak.sh: ten
+// The default takes 100 000 points an area; DELTAZ_SOAK_POINTS asks for another number (scripts/soak.sh: 25
 // million). Distances are SurfaceProbe's, not the builder's. Prints for each level the least room there was.
 #include <algorithm>
 #include <array>
