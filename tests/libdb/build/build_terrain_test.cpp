@@ -5,6 +5,7 @@
 #include <map>
 
 #include "libdb/access/database.h"
+#include "libdb/check/check.h"
 #include "libdb/export/export_terrain.h"
 #include "tests/support/synthetic_grid.h"
 
