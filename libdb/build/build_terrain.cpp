@@ -10,6 +10,7 @@
 #include "formats/container.h"
 #include "formats/patch_lattice.h"
 #include "formats/version.h"
+#include "libdb/access/seam_geometry.h"
 #include "libdb/build/area_bounds.h"
 #include "libdb/build/area_seams.h"
 #include "libdb/build/grid_build.h"
@@ -52,12 +53,13 @@ class AreaBuild {
       grid.measureErrors(workers_);
       report("coverage", done + 0.8 * share);
       grid.measureCoverage(workers_);
-      grid.gatherUpwards();
       done += share;
     }
+    DELTAZ_TRY_ASSIGN(seams_, makeSeams(sources_));
+    for (const Seam& seam : seams_) includeSeam(seam);
+    for (GridBuild& grid : grids_) grid.gatherUpwards();
     gatherArea();
     for (const GridBuild& grid : grids_) DELTAZ_TRY(grid.checkExtent(bounds_.centroid));
-    DELTAZ_TRY_ASSIGN(seams_, makeSeams(sources_));
     report("terrain", 0.6);
     DELTAZ_TRY(writeTerrain(publication));
     report("nodes", 0.95);
@@ -93,6 +95,29 @@ class AreaBuild {
           // Records 1 and onwards are the area's and the grids' clusters.
           numbers_[g][node] = static_cast<std::uint32_t>(order_.size() + grids_.size() + 2);
           order_.push_back({static_cast<std::uint16_t>(g), node});
+        }
+      }
+    }
+  }
+
+  // Seams move faces off the posts of the leaves that draw them, so the leaves' bounds must reach there.
+  void includeSeam(const Seam& seam) {
+    const auto post_at = [&](std::uint16_t grid, std::int64_t column, std::int64_t row) {
+      const RawGrid& source = sources_[grid];
+      const GridGeometry& geometry = grids_[grid].geometry();
+      return geometry.placeAt(column, row)
+          .at(geometry.metres(
+              source.height(column - source.header.x_axis.first, row - source.header.y_axis.first)));
+    };
+    std::vector<Vector3> positions;
+    for (const SeamVertex& vertex : seam.vertices)
+      positions.push_back(seamVertexPosition(seam, vertex, post_at));
+    for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
+      for (const ReplacedFace& replaced : seam.replacedOf(side)) {
+        for (std::uint32_t f = 0; f < replaced.face_count; ++f) {
+          const auto& [a, b, c] = seam.faces[replaced.first_face + f];
+          grids_[gridOf(seam, side)].includeSeamFace(replaced.column, replaced.row,
+                                                     {positions[a], positions[b], positions[c]});
         }
       }
     }

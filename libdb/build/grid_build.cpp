@@ -80,6 +80,26 @@ void GridBuild::measureCoverage(WorkerPool& workers) {
   });
 }
 
+// The leaf that has cell (column, row), from the coarsest level down.
+std::size_t GridBuild::leafOf(std::int64_t column, std::int64_t row) const {
+  const std::int64_t cells = geometry_.header().leaf_cells;
+  const std::int64_t x = floorDivide(column, cells), y = floorDivide(row, cells);
+  const auto isOver = [&](const PlannedNode& node) {
+    return node.x == x >> node.level && node.y == y >> node.level;
+  };
+  std::size_t node = levelBegin(plan_.level_count - 1);
+  while (!isOver(plan_.nodes[node])) ++node;
+  while (plan_.nodes[node].level > 0) {
+    node = plan_.nodes[node].first_child;
+    while (!isOver(plan_.nodes[node])) ++node;
+  }
+  return node;
+}
+
+void GridBuild::includeSeamFace(std::int64_t column, std::int64_t row, const std::array<Vector3, 3>& face) {
+  includeFace(facts_[leafOf(column, row)].summary.bounds, face);
+}
+
 // Children stand behind their parents.
 void GridBuild::gatherUpwards() {
   for (std::size_t i = plan_.nodes.size(); i-- > 0;) {

@@ -2,6 +2,7 @@
 // file. The steps run in the order they are declared. Nothing depends on the number of threads.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -36,6 +37,9 @@ class GridBuild {
   void measureErrors(WorkerPool& workers);
   // How far every coarser level's valid region lies from the full-resolution one.
   void measureCoverage(WorkerPool& workers);
+  // A face that the leaf with cell (column, row) draws instead of its own, into the leaf's bounds. Global
+  // level-0 indices; Earth-centred metres.
+  void includeSeamFace(std::int64_t column, std::int64_t row, const std::array<Vector3, 3>& face);
   // Bounds of children into parents, up to the whole grid.
   void gatherUpwards();
 
@@ -64,6 +68,7 @@ class GridBuild {
   std::size_t levelBegin(int level) const { return plan_.level_begin[static_cast<std::size_t>(level)]; }
   std::size_t levelEnd(int level) const { return plan_.level_end[static_cast<std::size_t>(level)]; }
   TerrainTile tileOf(std::size_t node) const;
+  std::size_t leafOf(std::int64_t column, std::int64_t row) const;
   void putErrors(NodeRecord& record, const PlannedNode& node, const NodeFacts& facts) const;
 
   const RawGrid& grid_;

@@ -140,6 +140,20 @@ TileSummary summarizeTile(const TerrainTile& tile, const GridGeometry& geometry)
   return summary;
 }
 
+void includeFace(NodeBounds& bounds, const std::array<Vector3, 3>& face) {
+  const Vector3 centre = fromCentroidUnits(bounds.centroid);
+  for (const Vector3& vertex : face)
+    bounds.radius = std::max(bounds.radius, radiusUnits(length(vertex - centre)));
+  const Vector3 normal = cross(face[1] - face[0], face[2] - face[0]);
+  if (!(length(normal) > 0)) return;
+  if (!bounds.has_cone) {
+    bounds.has_cone = true;
+    bounds.mean_normal = packNormal(normalized(normal));
+  }
+  bounds.cone_half_angle =
+      std::max(bounds.cone_half_angle, coneUnits(angleBetween(unpackNormal(bounds.mean_normal), normal)));
+}
+
 void includeChildren(NodeBounds& parent, std::span<const NodeBounds> children) {
   bool first = parent.empty;
   std::array<std::int64_t, 3> low{}, high{};

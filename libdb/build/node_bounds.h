@@ -36,6 +36,9 @@ Vector3 unpackNormal(const std::array<std::int16_t, 3>& packed);
 // Radians of a stored cone half angle.
 double coneAngle(std::uint16_t units);
 
+// Widens the bounds of a node with posts so that they hold a further face it draws; its mean normal stays.
+void includeFace(NodeBounds& bounds, const std::array<Vector3, 3>& face);
+
 // Widens `parent` (as summarizeTile left it, possibly empty) so that it holds `children` too. A parent
 // without posts of its own takes the middle of its children.
 void includeChildren(NodeBounds& parent, std::span<const NodeBounds> children);

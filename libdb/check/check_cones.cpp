@@ -102,8 +102,14 @@ class ConeRule {
       }
     }
     check_.has_facets[number] = normals.empty() ? 0 : 1;
+    if (const auto seam = check_.seam_faces.find(number); seam != check_.seam_faces.end()) {
+      for (const auto& [a, b, c] : seam->second) {
+        const Vector3 normal = cross(b - a, c - a);
+        if (length(normal) > 0) normals.push_back(normalized(normal));
+      }
+    }
     holdInCones(number, normals, report);
-    checkMean(number, record, normals.empty() ? Vector3{} : sum, report);
+    checkMean(number, record, check_.has_facets[number] == 0 ? Vector3{} : sum, report);
     checkSeams(number, record, *tile, report);
   }
 

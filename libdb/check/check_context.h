@@ -14,6 +14,7 @@
 #include "formats/container.h"
 #include "formats/file_system.h"
 #include "formats/node_file.h"
+#include "formats/seam.h"
 #include "formats/terrain_segment.h"
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/node_position.h"
@@ -43,6 +44,7 @@ struct CheckContext {
   std::vector<GridGeometry> grids;
   // False if the control points of a projected grid could not be read: then no position may be asked for.
   bool positions_known = true;
+  std::vector<Seam> seams;                         // those that could be decoded
   std::vector<CheckedFile> listed;                 // in area.json's order
   CheckedFile* nodes = nullptr;                    // none if it could not be opened
   std::map<std::uint32_t, CheckedFile*> segments;  // listed ones, opened or not

@@ -144,8 +144,8 @@ std::shared_ptr<const PatchLattice> patchesOf(CheckContext& context, std::size_t
   return nullptr;
 }
 
-// Decodes the seams between grids; what is wrong with them is reported.
-void checkSeams(CheckContext& context) {
+// Reads the seams between grids; what is wrong with them is reported.
+void readSeams(CheckContext& context) {
   std::size_t files = 0;
   for (const CheckedFile& file : context.listed) {
     if (file.reference.role != FileRole::kSeams) continue;
@@ -162,9 +162,13 @@ void checkSeams(CheckContext& context) {
         addError(context.report, bytes.error(), where);
         continue;
       }
-      const auto seam = decodeSeam(bytes.value(), context.area.grids,
-                                   fmt::format("{}, block {}", file.reference.name, block));
-      if (!seam.ok()) addError(context.report, seam.error(), where);
+      auto seam = decodeSeam(bytes.value(), context.area.grids,
+                             fmt::format("{}, block {}", file.reference.name, block));
+      if (seam.ok()) {
+        context.seams.push_back(std::move(seam).value());
+      } else {
+        addError(context.report, seam.error(), where);
+      }
     }
   }
 }
@@ -186,7 +190,7 @@ bool openDatabaseFiles(CheckContext& context) {
   }
   for (std::size_t grid = 0; grid < context.area.grids.size(); ++grid)
     context.grids.emplace_back(context.area.grids[grid], patchesOf(context, grid));
-  checkSeams(context);
+  readSeams(context);
   checkFileList(context);
   return true;
 }

@@ -57,6 +57,9 @@ void checkGeometry(CheckContext& context) {
     addSkipped(context.report, "errors, cones and normals, since there are errors already");
     return;
   }
+  TileLoader seam_loader(context);
+  const SeamFaces seam_faces = checkSeams(context, seam_loader);
+  seam_loader.reportRefusedReads(context.report);
   for (std::uint16_t grid = 0; grid < context.grids.size(); ++grid) {
     TileLoader loader(context);
     const std::optional<FullGrid> full = assembleGrid(context, loader, grid);
@@ -66,7 +69,7 @@ void checkGeometry(CheckContext& context) {
                  fmt::format("errors, cones and normals of grid {}, which could not be read", grid));
       continue;
     }
-    GeometryCheck check{context, loader, grid, *full};
+    GeometryCheck check{context, loader, grid, *full, seam_faces};
     checkCones(check);
     checkErrors(check);
     checkCoverage(check);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "libdb/access/between_posts.h"
@@ -13,12 +14,16 @@
 
 namespace deltaz {
 
+// What leaves draw where grids meet, by record number: corners in Earth-centred metres.
+using SeamFaces = std::unordered_map<std::uint32_t, std::vector<std::array<Vector3, 3>>>;
+
 // What the rules of one grid share.
 struct GeometryCheck {
   CheckContext& context;
   TileLoader& loader;
   std::uint16_t grid = 0;
   const FullGrid& full;
+  const SeamFaces& seam_faces;
   // Found by checkCones: the steepest facet of each node, and by record number whether a node draws any facet
   // itself.
   BetweenPosts between_posts = BetweenPosts(context.grids[grid]);
@@ -31,6 +36,9 @@ struct GeometryCheck {
   IssueLocation whereRecord(std::uint32_t number) const { return context.locate(number); }
 };
 
+// HGT_SEAM, TILE_SPHERE: the faces of seams stand on posts and inside the spheres of the leaves that draw
+// them. Before the grids, whose cones hold these faces too.
+SeamFaces checkSeams(CheckContext& context, TileLoader& loader);
 // TILE_CONE, TILE_NORMAL. First, since the others need what it finds.
 void checkCones(GeometryCheck& check);
 // ERR_GEOMETRIC, ERR_RMS, ERR_ANCESTOR; honours CheckOptions::sample_percent.

@@ -99,8 +99,7 @@ TEST(Seams, no_view_has_a_crack_between_two_grids) {
       const Schedule schedule = scheduleNodes(memory.database, index, view, {}, counts).value();
       cracks[n] = findSeamCrack(memory.database, meshOfCut(memory.database, schedule, view));
     });
-    for (std::size_t n = 0; n < cracks.size(); ++n)
-      ASSERT_EQ(cracks[n], "") << area.name << ", view " << n;
+    for (std::size_t n = 0; n < cracks.size(); ++n) ASSERT_EQ(cracks[n], "") << area.name << ", view " << n;
   }
 }
 
@@ -141,11 +140,37 @@ TEST(Seams, engines_agree_and_nothing_shows_through) {
       options.tolerance = 0;
       const Picture fast = draw(EngineKind::kFast, memory.database, options);
       const Picture reference = draw(EngineKind::kReference, memory.database, options);
+      int of_view = 0;
       for (std::size_t pixel = 0; pixel < fast.surface.size(); ++pixel)
-        differing += fast.surface[pixel] != reference.surface[pixel] ? 1 : 0;
+        of_view += fast.surface[pixel] != reference.surface[pixel] ? 1 : 0;
+      if (of_view * 100 > static_cast<int>(fast.surface.size())) {
+        const Camera& camera = options.camera;
+        std::printf("%s, view %d: %d pixels; eye %.9f,%.9f,%.4f look %.4f,%.4f,%.4f fov %.4f\n", area.name, n,
+                    of_view, camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading,
+                    camera.pitch, camera.roll, camera.field_of_view);
+      }
+      differing += of_view;
       pixels += static_cast<int>(fast.surface.size());
     }
     EXPECT_LE(differing, pixels / 1000) << area.name;
+  }
+}
+
+// The seam of these grids hangs hundreds of metres below the posts of the leaves that draw it; a narrow view
+// of nothing else once took those leaves for out of view.
+TEST(Seams, are_drawn_where_they_leave_the_posts_of_their_leaves) {
+  for (const SeamCase& area : cases()) {
+    if (std::string(area.name) != "inset across the end") continue;
+    const MemoryDatabase memory = build(area.grids, 16);
+    RenderOptions options;
+    options.camera.eye = {46.869891607, -121.705374463, 2055.5512};
+    options.camera.heading = 173.8277;
+    options.camera.pitch = 12.4973;
+    options.camera.field_of_view = 7.1869;
+    options.camera.width = 200;
+    options.camera.height = 150;
+    const Picture fast = draw(EngineKind::kFast, memory.database, options);
+    for (const Surface surface : fast.surface) ASSERT_EQ(surface, Surface::kTerrain);
   }
 }
 

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libdb/build/build_terrain.h"
-#include "tests/support/container_surgery.h"
+#include "tests/support/block_changes.h"
 #include "tests/support/database_editor.h"
 #include "tests/support/synthetic_grid.h"
 
@@ -89,38 +88,14 @@ TEST(ContentDigest, damage_is_an_error_and_no_digest) {
   EXPECT_FALSE(contentDigest(database.value()).ok());
 }
 
-// Two grids, one lying in the other, with the last bit of the seam's stored error as it is or flipped.
-MemoryFileSystem areaWithSeam(bool flipped) {
-  SyntheticGridOptions inset;
-  inset.south += 0.05;
-  inset.west += 0.05;
-  inset.spacing_latitude = inset.spacing_longitude = {15, 1};
-  inset.columns = inset.rows = 25;
-  const std::vector<RawGrid> grids = {syntheticGrid(inset), syntheticGrid(smallGrid())};
-  MemoryFileSystem files;
-  EXPECT_TRUE(files.makeDirectory("/folder").ok());
-  EXPECT_TRUE(buildTerrain(files, grids, kMemoryDatabasePath, {.leaf_cells = 16}).ok());
-  const std::string area_path = kMemoryDatabasePath + "/" + std::string(kAreaFileName);
-  AreaHeader area = parseArea(files.text(area_path), area_path).value();
-  for (FileReference& file : area.files) {
-    if (file.role != FileRole::kSeams) continue;
-    const std::string path = kMemoryDatabasePath + "/" + file.name;
-    std::vector<std::byte> seam = payloadOf(files.bytes(path), 0);
-    constexpr std::size_t kError = 24;
-    if (flipped) seam.at(kError) ^= std::byte{1};
-    files.setBytes(path, makeContainer(ContentKind::kSeams, BlockType::kSeam, {seam}));
-    const FileIdentity identity = identityOf(files.bytes(path));
-    file.length = identity.length;
-    file.id = identity.id;
-  }
-  files.setText(area_path, serializeArea(area));
-  return files;
-}
-
 TEST(ContentDigest, how_grids_are_joined_enters) {
-  const std::string digest = digestOf(areaWithSeam(false));
+  MemoryFileSystem files = areaWithInset();
+  const std::string digest = digestOf(files);
   EXPECT_EQ(digest.size(), 32u) << digest;
-  EXPECT_NE(digestOf(areaWithSeam(true)), digest);
+  EXPECT_EQ(digestOf(areaWithInset()), digest);
+  constexpr std::size_t kError = 24;  // offset of a field
+  changeSeam(files, [](std::vector<std::byte>& seam) { seam.at(kError) ^= std::byte{1}; });
+  EXPECT_NE(digestOf(files), digest);
 }
 
 }  // namespace

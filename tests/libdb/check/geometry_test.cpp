@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "libdb/access/database.h"
 #include "libdb/check/check.h"
 #include "tests/libdb/check/code_assets.h"
+#include "tests/support/block_changes.h"
 #include "tests/support/projected_grid.h"
 #include "tests/support/synthetic_grid.h"
 
@@ -66,6 +68,29 @@ TEST(CheckGeometry, projected_databases_are_clean) {
     expectClean(projectedGrid({.easting = 250000, .northing = 7000000, .voids = voids}), 16,
                 "voids " + std::to_string(static_cast<int>(voids)));
   }
+}
+
+TEST(CheckGeometry, grids_that_meet_are_clean) {
+  const Report report = checkedAt(areaWithInset(), CheckLevel::kGeometry);
+  EXPECT_TRUE(report.groups.empty()) << listing(report);
+  EXPECT_TRUE(report.complete);
+}
+
+// A vertex of the seam put elsewhere: on a post far from the leaf that draws it.
+TEST(CheckGeometry, a_seam_that_leaves_the_spheres_of_its_leaves_is_found) {
+  MemoryFileSystem files = areaWithInset();
+  const Database database = Database::open(files, kMemoryDatabasePath).value();
+  Seam seam = database.seams().at(0);
+  SeamVertex& vertex = seam.vertices.at(0);
+  const PostRange posts =
+      database.grid(vertex.side == SeamSide::kUpper ? seam.upper : seam.lower).columnsAt(0);
+  vertex.column = vertex.column < (posts.begin + posts.end) / 2 ? posts.end - 1 : posts.begin;
+  vertex.to_p1 = vertex.to_p2 = {0, 0};
+  vertex.weight1 = vertex.weight2 = 0;
+  changeSeam(files, [&](std::vector<std::byte>& bytes) { bytes = encodeSeam(seam); });
+  const Report report = checkedAt(files, CheckLevel::kGeometry);
+  ASSERT_FALSE(report.groups.empty());
+  EXPECT_EQ(report.groups[0].code, IssueCode::kTileSphere) << listing(report);
 }
 
 TEST(CheckGeometry, a_sample_says_how_many_leaves_it_took_and_is_the_same_every_time) {

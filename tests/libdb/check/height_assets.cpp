@@ -4,13 +4,12 @@
 
 #include "formats/patch_lattice.h"
 #include "tests/libdb/check/code_assets.h"
+#include "tests/support/block_changes.h"
 #include "tests/support/projected_grid.h"
 
 namespace deltaz {
 
 namespace {
-
-const std::string kPath = kMemoryDatabasePath;
 
 std::size_t postIndex(const TerrainBlock& block, int column, int row) {
   return static_cast<std::size_t>(row + 1) * (block.columns + 2u) + static_cast<std::size_t>(column + 1);
@@ -30,56 +29,23 @@ void nudge(DatabaseEditor& editor, std::uint32_t number, int column, int row) {
 
 using ChangeBlocks = std::function<void(std::vector<std::vector<std::byte>>&)>;
 
-// A database whose blocks of the file with one role are changed.
-Recipe withBlocks(const std::function<MemoryFileSystem()>& build, FileRole role, ContentKind kind,
-                  BlockType type, const ChangeBlocks& change, CheckLevel level) {
-  return [build, role, kind, type, change, level](const MemoryFileSystem&) {
-    MemoryFileSystem files = build();
-    const std::string area_path = kPath + "/" + std::string(kAreaFileName);
-    AreaHeader area = parseArea(files.text(area_path), area_path).value();
-    for (FileReference& file : area.files) {
-      if (file.role != role) continue;
-      const std::string path = kPath + "/" + file.name;
-      std::vector<std::vector<std::byte>> rows;
-      for (std::uint32_t row = 0; row < blockCount(files.bytes(path)); ++row)
-        rows.push_back(payloadOf(files.bytes(path), row));
-      change(rows);
-      files.setBytes(path, makeContainer(kind, type, rows));
-      const FileIdentity identity = identityOf(files.bytes(path));
-      file.length = identity.length;
-      file.id = identity.id;
-    }
-    files.setText(area_path, serializeArea(area));
+// A small projected database whose rows of control points are changed.
+Recipe withControls(const ChangeBlocks& change, CheckLevel level) {
+  return [change, level](const MemoryFileSystem&) {
+    MemoryFileSystem files =
+        buildInMemory(projectedGrid({.columns = 41, .rows = 37, .patch_cells = 16}), smallLeaves());
+    changeBlocks(files, FileRole::kPatches, ContentKind::kPatches, BlockType::kPatchRow, change);
     return checkedAt(files, level);
   };
 }
 
-// A small projected database whose rows of control points are changed.
-Recipe withControls(const ChangeBlocks& change, CheckLevel level) {
-  const auto build = [] {
-    return buildInMemory(projectedGrid({.columns = 41, .rows = 37, .patch_cells = 16}), smallLeaves());
-  };
-  return withBlocks(build, FileRole::kPatches, ContentKind::kPatches, BlockType::kPatchRow, change, level);
-}
-
 // Two grids, one lying in the other, whose seam is changed.
-Recipe withSeam(const ChangeBlocks& change) {
-  const auto build = [] {
-    SyntheticGridOptions inset;
-    inset.south += 0.05;
-    inset.west += 0.05;
-    inset.spacing_latitude = inset.spacing_longitude = {15, 1};
-    inset.columns = inset.rows = 25;
-    SyntheticGridOptions country;
-    country.columns = country.rows = 31;
-    const std::vector<RawGrid> grids = {syntheticGrid(inset), syntheticGrid(country)};
-    MemoryFileSystem files;
-    EXPECT_TRUE(files.makeDirectory("/folder").ok());
-    EXPECT_TRUE(buildTerrain(files, grids, kPath, smallLeaves()).ok());
-    return files;
+Recipe withSeam(const std::function<void(std::vector<std::byte>&)>& change) {
+  return [change](const MemoryFileSystem&) {
+    MemoryFileSystem files = areaWithInset();
+    changeSeam(files, change);
+    return checkedAt(files, CheckLevel::kGeometry);
   };
-  return withBlocks(build, FileRole::kSeams, ContentKind::kSeams, BlockType::kSeam, change,
-                    CheckLevel::kDecode);
 }
 
 // Moves the third point of the third row: along the meridian, which is in the surface, or along the Earth's
@@ -124,8 +90,8 @@ std::vector<Asset> heightAssets() {
       {IssueCode::kHgtPatches, withControls([](auto& rows) { rows.pop_back(); }, CheckLevel::kDecode),
        withControls([](auto&) {}, CheckLevel::kGeometry)},
       // One removed cell too many in the header's count; a larger error, which says nothing wrong.
-      {IssueCode::kHgtSeam, withSeam([](auto& blocks) { blocks[0].at(4) ^= std::byte{1}; }),
-       withSeam([](auto& blocks) { blocks[0].at(24) ^= std::byte{1}; })},
+      {IssueCode::kHgtSeam, withSeam([](auto& seam) { seam.at(4) ^= std::byte{1}; }),
+       withSeam([](auto& seam) { seam.at(24) ^= std::byte{1}; })},
   };
 }
 
