@@ -63,7 +63,8 @@ Json groupJson(const IssueGroup& group) {
 Json jsonReport(const Report& report, const CheckRequest& request, const Judgement& judgement) {
   Json json = jsonHeader("dbcheck");
   json["area"] = baseName(request.area);
-  json["against"] = request.against ? Json(baseName(*request.against)) : Json(nullptr);
+  json["against"] = Json::array();
+  for (const std::string& path : request.against) json["against"].push_back(baseName(path));
   json["level"] = levelName(request.level);
   json["sample_percent"] = request.sample_percent;
   json["fail_on"] = severityName(request.fail_on);

@@ -98,9 +98,8 @@ Result<CheckRequest> makeRequest(const Options& options) {
   if (options.sample < 100 && *level < CheckLevel::kGeometry)
     return usageError("--sample", "it means nothing below --level geometry");
   request.fail_on = options.fail_on == "warning" ? Severity::kWarning : Severity::kError;
-  for (const std::string& path : options.against)
-    request.against = request.against ? *request.against + ", " + path : path;
-  if (!options.crs.empty() && !request.against)
+  request.against = options.against;
+  if (!options.crs.empty() && request.against.empty())
     return usageError("--crs", "it means nothing without --against");
   return request;
 }
@@ -133,11 +132,11 @@ Result<int> check(const Options& options) {
     ProgressReporter progress(progressMode(options.common), "dbcheck", std::cerr);
     progress.report("reading", 0);
     SourceArea sources;
-    if (request.against) {
+    if (!request.against.empty()) {
       DELTAZ_TRY_ASSIGN(sources, readAgainst(options.against, options.crs, request.area));
       check_options.against = sources.grids.data();
       check_options.against_count = sources.grids.size();
-      check_options.against_name = *request.against;
+      check_options.against_name = fmt::format("{}", fmt::join(request.against, ", "));
     }
     progress.report("checking", 0.1);
     report = checkDatabase(localFileSystem(), request.area, check_options);

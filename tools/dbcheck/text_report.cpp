@@ -84,9 +84,9 @@ std::string textReport(const Report& report, const CheckRequest& request, const 
                                                     : fmt::format("{} leaves", report.leaves_measured),
                         sample);
   }
-  if (request.against) {
+  if (!request.against.empty()) {
     text +=
-        fmt::format("  against {}: {} compared\n", *request.against, plural(report.posts_compared, "post"));
+        fmt::format("  against {}: {} compared\n", fmt::join(request.against, ", "), plural(report.posts_compared, "post"));
   }
   for (const std::string& reason : report.skipped) text += "  not checked: " + reason + "\n";
   for (const IssueGroup& group : report.groups) text += groupText(group, shown_locations);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "libdb/check/check.h"
 
@@ -30,7 +31,7 @@ std::optional<CheckLevel> levelFromName(const std::string& name);
 // What was asked for, and of what: the heading of both forms of the report.
 struct CheckRequest {
   std::string area;  // as given
-  std::optional<std::string> against;
+  std::vector<std::string> against;  // paths; none without comparison
   CheckLevel level = CheckLevel::kDecode;
   Severity fail_on = Severity::kError;
   double sample_percent = 100;  // of leaves whose errors are recomputed
