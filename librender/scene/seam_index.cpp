@@ -1,6 +1,7 @@
 #include "librender/scene/seam_index.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace deltaz {
 namespace {
@@ -63,11 +64,15 @@ SeamIndex::SeamIndex(const Database& database) : seams_(&database.seams()) {
       }
     }
   }
+  // Faces of other leaves stand on posts of partners, which must be at hand whatever is left of them.
+  std::unordered_set<NodePosition, NodePositionHash> needed;
+  for (const auto& [position, leaf] : leaves_) needed.insert(leaf.partners.begin(), leaf.partners.end());
+  for (const NodePosition& position : needed) leaves_.try_emplace(position);
   for (const auto& [position, leaf] : leaves_) {
     const GridGeometry& geometry = grids_[position.grid];
     std::int64_t gone = 0;
     for (const CellRun& run : leaf.removed) gone += run.end - run.begin;
-    const bool removed = gone == cellsOf(geometry, position);
+    const bool removed = gone == cellsOf(geometry, position) && !needed.contains(position);
     NodePosition node = position;
     for (; node.level < geometry.header().level_count; ++node.level, node.x >>= 1, node.y >>= 1) {
       Counts& counts = touched_[node];

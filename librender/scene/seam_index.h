@@ -15,8 +15,8 @@ namespace deltaz {
 
 enum class SeamState : std::uint8_t {
   kFree,     // no seam touches the node
-  kTouched,  // some of its faces are replaced or removed: to be drawn at level 0
-  kRemoved,  // nothing of it is drawn
+  kTouched,  // some of its faces are replaced or removed, or seams stand on its posts: to be taken at level 0
+  kRemoved,  // nothing of it is drawn or needed
 };
 
 // A face that a seam replaced.

@@ -59,6 +59,8 @@ std::vector<SeamCase> cases() {
   // Over the country's north-eastern corner and beyond.
   result.push_back({"inset across the end",
                     {syntheticGrid(fine(46.86 + 0.3 / 3600, -121.75, 300, 250, {1, 1})), country}});
+  // Over all of it: nothing of the country is drawn, but along the ends the inset stands on its posts.
+  result.push_back({"inset over everything", {syntheticGrid(fine(46.8, -121.8, 121, 121, {3, 1})), country}});
   ProjectedGridOptions utm;
   utm.columns = 131;
   utm.rows = 113;
