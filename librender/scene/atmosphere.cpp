@@ -13,6 +13,9 @@ constexpr double kAerosolHeight =
     kMolecularHeight / 4;                 // so that its density is the fourth power of the other's
 constexpr double kMolecularRed = 2.5e-6;  // 1/m at height 0; green twice, blue four times as much
 constexpr double kAerosol = 2.0e-5;       // 1/m at height 0
+// Air has a floor, in metres: no dry land lies lower, but facets of a whole globe sag by kilometres, within a
+// pixel of the ground they stand for.
+constexpr double kLowestGround = -500;
 constexpr LinearColor kHaze{0.60, 0.70, 0.82};
 constexpr LinearColor kZenith{0.060, 0.170, 0.480};
 
@@ -63,7 +66,7 @@ LinearColor Atmosphere::sky(const Vector3& ray) const {
 
 LinearColor Atmosphere::throughHaze(const LinearColor& color, const Vector3& ray, double u) const {
   const double distance = length(ray) * u;
-  const double height = heightOf(eye_ + ray * u);
+  const double height = std::max(kLowestGround, heightOf(eye_ + ray * u));
   const double density = exponential(-height / kMolecularHeight);
   const double density2 = density * density, eye_density2 = eye_density_ * eye_density_;
   const double molecular =

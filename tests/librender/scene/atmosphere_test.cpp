@@ -90,6 +90,16 @@ TEST(Atmosphere, nearly_level_paths_join_the_others_without_a_step) {
   }
 }
 
+// Facets of a globe at its coarsest sag by kilometres; the air over them must not thicken.
+TEST(Atmosphere, ground_far_below_the_ellipsoid_is_seen_through_little_more_air) {
+  const Air air = airAt(400000, -90);
+  const Vector3 ray = air.view.ray(air.view.centre_j, air.view.centre_i);
+  const double at_surface = shareKept(air, ray, 400000), below = shareKept(air, ray, 410000);
+  EXPECT_GT(at_surface, 0.5);
+  EXPECT_LT(below, at_surface);
+  EXPECT_GT(below, 0.97 * at_surface);
+}
+
 TEST(Atmosphere, sky_meets_the_haze_at_the_horizon_and_darkens_upwards) {
   const Air air = airAt(500, 30);
   const LinearColor haze = air.atmosphere.hazeColor();
