@@ -326,11 +326,17 @@ void checkResampled(CheckContext& context, std::uint16_t grid) {
                 where, largest));
 }
 
-// The grid that has the source's posts; if there is none, the one in its place, so that the differences can
-// be told.
+bool sameFiles(const GridHeader& a, const GridHeader& b) {
+  return std::equal(a.sources.begin(), a.sources.end(), b.sources.begin(), b.sources.end(),
+                    [](const auto& one, const auto& other) { return one.content == other.content; });
+}
+
+// The grid that has the source's posts, and names its files if several have such posts; if there is none, the
+// one in its place, so that the differences can be told.
 std::uint16_t gridFor(const CheckContext& context, const RawGrid& source, std::size_t place) {
   std::size_t best = std::min(place, context.grids.size() - 1);
   std::int64_t most_shared = 0;
+  bool names_files = false;
   for (std::size_t grid = 0; grid < context.grids.size(); ++grid) {
     const GridHeader& ours = context.grids[grid].header();
     const std::optional<Offset> at = offsetOf(ours, source.header);
@@ -341,8 +347,10 @@ std::uint16_t gridFor(const CheckContext& context, const RawGrid& source, std::s
     };
     const std::int64_t posts = shared(ours.x_axis, at->column, source.header.x_axis.count) *
                                shared(ours.y_axis, at->row, source.header.y_axis.count);
-    if (posts <= most_shared) continue;
+    const bool names = posts > 0 && sameFiles(ours, source.header);
+    if (names != names_files ? names_files : posts <= most_shared) continue;
     most_shared = posts;
+    names_files = names;
     best = grid;
   }
   return static_cast<std::uint16_t>(best);

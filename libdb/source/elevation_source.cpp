@@ -16,6 +16,7 @@
 #include "libdb/source/source_error.h"
 #include "libdb/source/source_opening.h"
 #include "libdb/source/source_raster.h"
+#include "libdb/source/void_cover.h"
 #include "libdb/source/void_filling.h"
 
 namespace deltaz {
@@ -38,10 +39,8 @@ class AreaReader {
     for (SourceRaster& raster : rasters_) DELTAZ_TRY(placeOnEarth(raster));
     const bool resampled = options_.grid != "source" || options_.spacing;
     if (resampled) DELTAZ_TRY(resample());
-    if (options_.voids == VoidPolicy::kFill) fill();
-    std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
-      return spacingInMetres(a) < spacingInMetres(b);
-    });
+    sortFinestFirst();
+    if (options_.voids == VoidPolicy::kFill && !resampled) DELTAZ_TRY(fill());
     for (SourceRaster& raster : rasters_) result_.grids.push_back(std::move(raster.grid));
     return std::move(result_);
   }
@@ -195,6 +194,12 @@ class AreaReader {
     return spacing * (raster.system.projected ? raster.system.metres_per_unit : kMetresPerDegree);
   }
 
+  void sortFinestFirst() {
+    std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
+      return spacingInMetres(a) < spacingInMetres(b);
+    });
+  }
+
   // ---- what is changed on request
 
   Status resample() {
@@ -203,9 +208,8 @@ class AreaReader {
     target.bounds = options_.bounds;
     target.quantum = options_.quantum;
     target.allow_ballpark = options_.allow_ballpark;
-    std::stable_sort(rasters_.begin(), rasters_.end(), [](const SourceRaster& a, const SourceRaster& b) {
-      return spacingInMetres(a) < spacingInMetres(b);
-    });
+    target.fill_voids = options_.voids == VoidPolicy::kFill;
+    sortFinestFirst();
     if (options_.grid == "source") {
       target.system = rasters_.front().system;
     } else if (options_.grid == "geodetic") {
@@ -213,14 +217,28 @@ class AreaReader {
     } else {
       DELTAZ_TRY_ASSIGN(target.system, parseReferenceSystem(options_.grid, "--grid"));
     }
-    DELTAZ_TRY_ASSIGN(SourceRaster one, resampleRasters(rasters_, area_, target));
+    DELTAZ_TRY_ASSIGN(ResampledRasters one, resampleRasters(rasters_, area_, target));
+    result_.filled_posts = one.filled_posts;
     rasters_.clear();
-    rasters_.push_back(std::move(one));
+    rasters_.push_back(std::move(one.raster));
     return placeOnEarth(rasters_.front());
   }
 
-  void fill() {
-    for (SourceRaster& raster : rasters_) result_.filled_posts += fillVoidPosts(raster.grid);
+  // Ground is made up only where no grid has any: a fill of an upper grid would bury what a lower one knows.
+  Status fill() {
+    std::vector<std::vector<std::uint8_t>> covered;
+    for (SourceRaster& raster : rasters_) {
+      std::vector<PlacedGrid> others;
+      for (const SourceRaster& other : rasters_) {
+        if (&other != &raster) others.push_back({&other.grid, other.system, other.path});
+      }
+      DELTAZ_TRY_ASSIGN(std::vector<std::uint8_t> found,
+                        coverVoids(raster.grid, raster.system, others, options_.allow_ballpark));
+      covered.push_back(std::move(found));
+    }
+    for (std::size_t k = 0; k < rasters_.size(); ++k)
+      result_.filled_posts += fillVoidPosts(rasters_[k].grid, covered[k]);
+    return Success{};
   }
 
   const SourceOptions& options_;

@@ -12,6 +12,7 @@
 #include "libdb/source/grid_placement.h"
 #include "libdb/source/grid_surface.h"
 #include "libdb/source/source_error.h"
+#include "libdb/source/void_filling.h"
 
 namespace deltaz {
 
@@ -52,7 +53,7 @@ class Resampler {
     for (const SourceRaster& raster : rasters) placed_.push_back({&raster.grid, raster.system, raster.path});
   }
 
-  Result<SourceRaster> run() {
+  Result<ResampledRasters> run() {
     made_.path = rasters_.front().path;
     made_.system = target_.system;
     describe();
@@ -65,8 +66,10 @@ class Resampler {
       cutTo(made_.grid, window);
     }
     DELTAZ_TRY(takeHeights());
+    // A filled post has a part in the surface over the sources' posts beside it, so filling comes first.
+    const std::uint64_t filled = target_.fill_voids ? fillVoidPosts(made_.grid) : 0;
     DELTAZ_TRY(measure());
-    return std::move(made_);
+    return ResampledRasters{std::move(made_), filled};
   }
 
  private:
@@ -234,8 +237,8 @@ class Resampler {
 
 }  // namespace
 
-Result<SourceRaster> resampleRasters(std::span<const SourceRaster> rasters, const ReferenceSystem& area,
-                                     const ResamplingTarget& target) {
+Result<ResampledRasters> resampleRasters(std::span<const SourceRaster> rasters, const ReferenceSystem& area,
+                                         const ResamplingTarget& target) {
   return Resampler(rasters, area, target).run();
 }
 

@@ -3,6 +3,7 @@
 // Pure function; memory: the new grid.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -19,13 +20,19 @@ struct ResamplingTarget {
   std::optional<PostSpacing> spacing;  // none: like that of the first raster
   std::optional<SourceBounds> bounds;
   std::optional<Rational> quantum;
+  bool fill_voids = false;
   bool allow_ballpark = false;
 };
 
+struct ResampledRasters {
+  SourceRaster raster;
+  std::uint64_t filled_posts = 0;
+};
+
 // Pre: rasters are not empty, the finest first. Posts lie at whole multiples of the spacing. The header's
-// `resampling` says how far the new surface lies from the rasters' posts. kUsage if the spacing's unit does
-// not go with the system, or no post of the new grid has a height.
-Result<SourceRaster> resampleRasters(std::span<const SourceRaster> rasters, const ReferenceSystem& area,
-                                     const ResamplingTarget& target);
+// `resampling` says how far the new surface, filled posts included, lies from the rasters' posts. kUsage if
+// the spacing's unit does not go with the system, or no post of the new grid has a height.
+Result<ResampledRasters> resampleRasters(std::span<const SourceRaster> rasters, const ReferenceSystem& area,
+                                         const ResamplingTarget& target);
 
 }  // namespace deltaz

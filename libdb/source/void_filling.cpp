@@ -98,35 +98,71 @@ void relax(Level& level) {
   }
 }
 
-}  // namespace
+// Whether a post and all its neighbours are covered: then every facet at it is, but for folds of the others'.
+bool isCoveredAround(const RawGrid& grid, std::span<const std::uint8_t> covered, std::int64_t column,
+                     std::int64_t row) {
+  const auto columns = grid.header.x_axis.count, rows = grid.header.y_axis.count;
+  for (std::int64_t j = std::max<std::int64_t>(row - 1, 0); j <= std::min(row + 1, rows - 1); ++j) {
+    for (std::int64_t i = std::max<std::int64_t>(column - 1, 0); i <= std::min(column + 1, columns - 1);
+         ++i) {
+      if (covered[static_cast<std::size_t>(j * columns + i)] == 0) return false;
+    }
+  }
+  return true;
+}
 
-std::uint64_t fillVoidPosts(RawGrid& grid) {
-  const auto voids =
-      static_cast<std::uint64_t>(std::count(grid.valid.begin(), grid.valid.end(), std::uint8_t{0}));
-  if (voids == 0 || voids == grid.valid.size()) return 0;
+// Stretches the membrane: heights of all voids that are not covered.
+void stretch(RawGrid& grid, std::span<const std::uint8_t> covered) {
   std::vector<Level> levels(1);
   levels[0].columns = grid.header.x_axis.count;
   levels[0].rows = grid.header.y_axis.count;
   levels[0].heights.assign(grid.heights.begin(), grid.heights.end());
   levels[0].is_void.resize(grid.valid.size());
-  std::transform(grid.valid.begin(), grid.valid.end(), levels[0].is_void.begin(),
-                 [](std::uint8_t valid) { return static_cast<std::uint8_t>(valid == 0 ? 1 : 0); });
+  for (std::size_t k = 0; k < grid.valid.size(); ++k)
+    levels[0].is_void[k] = grid.valid[k] == 0 && (covered.empty() || covered[k] == 0) ? 1 : 0;
   // Up to the first level without voids: the last one, of a single post, has none.
   while (std::find(levels.back().is_void.begin(), levels.back().is_void.end(), std::uint8_t{1}) !=
          levels.back().is_void.end())
     levels.push_back(averaged(levels.back()));
+  if (levels.size() == 1) return;
   for (std::size_t level = levels.size() - 1; level-- > 0;) {
     interpolateVoids(levels[level], levels[level + 1]);
     relax(levels[level]);
     levels.pop_back();
   }
   for (std::size_t k = 0; k < grid.heights.size(); ++k) {
-    if (grid.valid[k] == 0) grid.heights[k] = static_cast<std::int32_t>(std::lround(levels[0].heights[k]));
+    if (levels[0].is_void[k] != 0)
+      grid.heights[k] = static_cast<std::int32_t>(std::lround(levels[0].heights[k]));
   }
-  grid.valid.clear();
-  grid.void_kinds.clear();
-  grid.header.sentinels.clear();
-  return voids;
+}
+
+}  // namespace
+
+std::uint64_t fillVoidPosts(RawGrid& grid, std::span<const std::uint8_t> covered) {
+  const auto voids =
+      static_cast<std::uint64_t>(std::count(grid.valid.begin(), grid.valid.end(), std::uint8_t{0}));
+  if (voids == 0 || voids == grid.valid.size()) return 0;
+  stretch(grid, covered);
+  std::uint64_t kept = 0;
+  std::size_t post = 0;
+  for (std::int64_t row = 0; row < grid.header.y_axis.count; ++row) {
+    for (std::int64_t column = 0; column < grid.header.x_axis.count; ++column, ++post) {
+      if (grid.valid[post] != 0) continue;
+      if (!covered.empty() && isCoveredAround(grid, covered, column, row)) {
+        grid.heights[post] = 0;
+        ++kept;
+        continue;
+      }
+      grid.valid[post] = 1;
+      if (!grid.void_kinds.empty()) grid.void_kinds[post] = 0;
+    }
+  }
+  if (kept == 0) {
+    grid.valid.clear();
+    grid.void_kinds.clear();
+    grid.header.sentinels.clear();
+  }
+  return voids - kept;
 }
 
 }  // namespace deltaz

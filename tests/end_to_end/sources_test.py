@@ -153,6 +153,27 @@ def a_void_is_filled_only_when_asked(folder):
 
 
 @case
+def a_fill_leaves_what_another_source_covers_to_it(folder):
+    whole = small_dem(folder, void=False)
+    pieces = {"sw": (0, 15, "Int16"), "nw": (0, 0, "Float32"), "ne": (20, 0, "Int16")}
+    for name, (column, row, kind) in pieces.items():
+        gdal("gdal_translate", "-q", "-ot", kind, "-srcwin", column, row, 21 if column == 0 else 20, 16 if row == 0 else 15, whole, folder / f"{name}.tif")
+    sources = [folder / f"{name}.tif" for name in pieces]
+    ended = run("dbbuild", "terrain", *sources, "-o", folder / "filled.dz", "--void", "fill", "--json").json()
+    # The rectangle of the two Int16 quarters; the south-east of it is nobody's, the north-west the third source's.
+    require(ended["grids"] == 2 and ended["filled"] == 19 * 14, ended)
+    require(ended["voids"] == 20 * 15, ended)
+    run("dbcheck", folder / "filled.dz", "--level", "all", "--against", *sources)
+
+
+@case
+def a_resampled_fill_tells_its_error_honestly(folder):
+    small = small_dem(folder)
+    run("dbbuild", "terrain", small, "-o", folder / "filled.dz", "--grid", "EPSG:32632", "--void", "fill")
+    run("dbcheck", folder / "filled.dz", "--level", "all", "--against", small)
+
+
+@case
 def a_resampled_area_says_what_it_costs(folder):
     small = small_dem(folder, void=False)
     for options in (["--grid", "EPSG:32632", "--spacing", "500m"], ["--spacing", "30as"], ["--grid", "geodetic", "--spacing", "20as"]):

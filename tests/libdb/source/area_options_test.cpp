@@ -99,6 +99,75 @@ TEST(VoidFilling, a_plane_full_of_holes_becomes_the_plane) {
   }
 }
 
+// The plane at every third second, and at every second with a hole in its middle.
+TEST(VoidFilling, a_void_over_another_grid_stays_and_shows_it) {
+  const TemporaryDirectory folder;
+  TestRaster coarse = plane(20, 20);
+  coarse.transform = {-1.5 / 3600, 3.0 / 3600, 0, 58.5 / 3600, 0, -3.0 / 3600};
+  for (double& height : coarse.values) height = height * 3 + 100;
+  TestRaster fine = plane(58, 58);
+  for (std::size_t k = 0; k < fine.values.size(); ++k) {
+    const std::size_t row = k / 58, column = k % 58;
+    if (row >= 20 && row < 40 && column >= 20 && column < 40) fine.values[k] = -32768;
+  }
+  fine.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const std::string below = makeRaster(folder, coarse, "coarse.tif");
+  const std::string above = makeRaster(folder, fine, "fine.tif");
+  const SourceArea area = readAll({below, above}, {.voids = VoidPolicy::kFill});
+  ASSERT_EQ(area.grids.size(), 2u);
+  EXPECT_EQ(area.filled_posts, 0u);
+  EXPECT_FALSE(area.grids[0].isValid(25, 25));
+  EXPECT_EQ(area.grids[0].header.sentinels, std::vector<double>{-32768});
+}
+
+// The lower grid has a hole of its own inside the upper one's: that alone is filled, with a rim one post wide
+// that lies on the lower grid's ground.
+TEST(VoidFilling, ground_is_made_up_only_where_no_grid_has_any) {
+  const TemporaryDirectory folder;
+  const auto nodata = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  TestRaster coarse = plane(20, 20);
+  coarse.transform = {-1.5 / 3600, 3.0 / 3600, 0, 58.5 / 3600, 0, -3.0 / 3600};
+  for (double& height : coarse.values) height = height * 3 + 100;
+  // Posts 9 .. 11 of both axes, so that facets are missing from 24" to 36".
+  for (const std::size_t row : {8u, 9u, 10u}) {
+    for (const std::size_t column : {9u, 10u, 11u}) coarse.values[row * 20 + column] = -32768;
+  }
+  coarse.change = nodata;
+  TestRaster fine = plane(58, 58);
+  for (std::size_t row = 17; row < 43; ++row) {
+    for (std::size_t column = 15; column < 45; ++column) fine.values[row * 58 + column] = -32768;
+  }
+  fine.change = nodata;
+  const SourceArea area = readAll({makeRaster(folder, coarse, "c.tif"), makeRaster(folder, fine, "f.tif")},
+                                  {.voids = VoidPolicy::kFill});
+  ASSERT_EQ(area.grids.size(), 2u);
+  const RawGrid& upper = area.grids[0];
+  EXPECT_EQ(upper.header.x_axis.count, 58);
+  EXPECT_TRUE(upper.isValid(30, 30)) << "no grid has ground there";
+  EXPECT_TRUE(upper.isValid(24, 30)) << "the rim, on the last post of the lower grid";
+  EXPECT_EQ(upper.height(24, 30), 2 * 24 + 3 * 30 + 100) << "the lower grid's height";
+  EXPECT_FALSE(upper.isValid(22, 30)) << "the lower grid's ground shows";
+  EXPECT_FALSE(upper.isValid(38, 30));
+  EXPECT_TRUE(area.grids[1].valid.empty()) << "the lower grid's hole is no one else's ground";
+}
+
+TEST(VoidFilling, the_error_of_resampling_holds_for_filled_posts_too) {
+  const TemporaryDirectory folder;
+  TestRaster raster = plane(60, 60);
+  for (std::size_t k = 0; k < raster.values.size(); ++k) {
+    const std::size_t row = k / 60, column = k % 60;
+    // A lone peak in a wide void: no cell of the sources' surface touches it.
+    if (row > 20 && row < 40 && column > 20 && column < 40) raster.values[k] = -32768;
+    if (row == 30 && column == 30) raster.values[k] = 5000;
+  }
+  raster.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const RawGrid grid =
+      readOne(makeRaster(folder, raster), {.spacing = PostSpacing{2.5, true}, .voids = VoidPolicy::kFill});
+  ASSERT_TRUE(grid.header.resampling.has_value());
+  EXPECT_TRUE(grid.valid.empty());
+  EXPECT_GT(grid.header.resampling->largest_error, 4000);
+}
+
 TEST(Resampling, a_plane_stays_a_plane_and_the_error_is_that_of_rounding) {
   const TemporaryDirectory folder;
   const RawGrid grid = readOne(makeRaster(folder, plane(61, 61)), {.spacing = PostSpacing{2.5, true}});
