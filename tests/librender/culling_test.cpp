@@ -48,11 +48,14 @@ TEST(Culling, removes_no_node_and_no_face_that_the_reference_shows) {
       for (std::size_t pixel = 0; pixel < reference.surface.size(); ++pixel) {
         if (reference.surface[pixel] != Surface::kTerrain) continue;
         ++shown;
-        ASSERT_TRUE(drawn.contains(static_cast<std::uint32_t>(reference.triangle[pixel] >> 32)));
+        ASSERT_TRUE(drawn.contains(static_cast<std::uint32_t>(reference.triangle[pixel] >> 32)))
+            << inWords(render.camera);
       }
       const PictureDifference difference = comparePictures(area.database, render.camera, fast, reference);
       // Where the two disagree about coverage the sample lies on an edge, but for the snapping of vertices.
-      ASSERT_LE(difference.farthest_from_edge, 1.0 / 256);
+      EXPECT_LE(difference.farthest_from_edge, 1.0 / 256)
+          << "latitude " << options.south << ", voids " << static_cast<int>(options.voids) << ", "
+          << inWords(render.camera);
     }
     EXPECT_GT(out_of_view, 0u);
     EXPECT_GT(back_facing, 0u);
@@ -93,9 +96,7 @@ TEST(LevelsOfDetail, show_no_sea_or_sky_through_the_ground) {
       const Picture fast = draw(EngineKind::kFast, area.database, render, statistics);
       const Picture reference = draw(EngineKind::kReference, area.database, render, reference_statistics);
       coarse += statistics.coarsest_level > 0 ? 1 : 0;
-      EXPECT_EQ(seenThrough(fast, reference), 0)
-          << "eye " << render.camera.eye.latitude << "," << render.camera.eye.longitude << ","
-          << render.camera.eye.height << " look " << render.camera.heading << "," << render.camera.pitch;
+      EXPECT_EQ(seenThrough(fast, reference), 0) << inWords(render.camera);
     }
   }
   EXPECT_GT(coarse, 3);

@@ -390,6 +390,12 @@ int viewsPerArea(int by_default) {
   return wanted != nullptr ? std::atoi(wanted) : by_default;
 }
 
+std::string inWords(const Camera& camera) {
+  return fmt::format("eye {:.9f},{:.9f},{:.4f} look {:.4f},{:.4f},{:.4f} fov {:.4f}", camera.eye.latitude,
+                     camera.eye.longitude, camera.eye.height, camera.heading, camera.pitch, camera.roll,
+                     camera.field_of_view);
+}
+
 Camera randomView(const Database& database, std::mt19937& random, int width, int height) {
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);

@@ -67,6 +67,9 @@ ContractFinding measureContract(const Database& database, const CutMesh& mesh, c
 // Number of random views to try in each area: DELTAZ_VIEWS of the environment, or so many by default.
 int viewsPerArea(int by_default);
 
+// For messages: enough to draw the view again.
+std::string inWords(const Camera& camera);
+
 // Views of all sorts: over the ground, in it, under water, straight up and down, far away, from 1 cm to
 // 10^7 m, wide and narrow.
 Camera randomView(const Database& database, std::mt19937& random, int width, int height);

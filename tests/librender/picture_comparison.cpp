@@ -1,6 +1,7 @@
 #include "tests/librender/picture_comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -19,16 +20,33 @@ double distanceToSegment(const ScreenPoint& p, const ScreenPoint& a, const Scree
   return std::hypot(p.j - (a.j + t * dj), p.i - (a.i + t * di));
 }
 
-// Shortens `distance[k]` to the distance from pixels[k] to the edge a-b, given in view space.
-void approach(const ViewTransform& view, Vector3 a, Vector3 b, const std::vector<ScreenPoint>& pixels,
-              std::vector<double>& distance) {
-  if (a.x <= kHither && b.x <= kHither) return;
-  if (a.x <= kHither) std::swap(a, b);
-  if (b.x <= kHither) b = a + (b - a) * ((a.x - kHither) / (a.x - b.x));
+// Where the edge a-b meets the hither plane.
+Vector3 atHither(const Vector3& a, const Vector3& b) {
+  return a + (b - a) * ((kHither - a.x) / (b.x - a.x));
+}
+
+// Shortens `distance[k]` to the distance from pixels[k] to the line from a to b, given in view space in front
+// of the eye.
+void approachLine(const ViewTransform& view, const Vector3& a, const Vector3& b,
+                  const std::vector<ScreenPoint>& pixels, std::vector<double>& distance) {
   const ScreenPoint from{view.centre_j + a.y / a.x, view.centre_i + a.z / a.x};
   const ScreenPoint to{view.centre_j + b.y / b.x, view.centre_i + b.z / b.x};
   for (std::size_t k = 0; k < pixels.size(); ++k)
     distance[k] = std::min(distance[k], distanceToSegment(pixels[k], from, to));
+}
+
+// The same for what of a face's outline lies beyond the hither plane, and for the cut along that plane.
+void approach(const ViewTransform& view, const std::array<Vector3, 3>& face,
+              const std::vector<ScreenPoint>& pixels, std::vector<double>& distance) {
+  std::vector<Vector3> cut;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 &a = face[k], &b = face[(k + 1) % 3];
+    const bool a_beyond = a.x > kHither, b_beyond = b.x > kHither;
+    if (!a_beyond && !b_beyond) continue;
+    if (a_beyond != b_beyond) cut.push_back(atHither(a, b));
+    approachLine(view, a_beyond ? a : cut.back(), b_beyond ? b : cut.back(), pixels, distance);
+  }
+  if (cut.size() == 2) approachLine(view, cut[0], cut[1], pixels, distance);
 }
 
 template <typename T>
@@ -49,10 +67,8 @@ double farthestFromEdges(const Database& database, const Camera& camera,
       std::vector<Vector3> position;
       for (int j = 0; j < tile.rows; ++j) {
         for (int i = 0; i < tile.columns; ++i) {
-          position.push_back(view.toView(toEarthCentred(
-              geometry.header().ellipsoid,
-              {geometry.latitude(tile.first_row + j), geometry.longitude(tile.first_column + i),
-               geometry.metres(tile.height(i, j))})));
+          position.push_back(view.toView(geometry.placeAt(tile.first_column + i, tile.first_row + j)
+                                             .at(geometry.metres(tile.height(i, j)))));
         }
       }
       for (int j = 0; j + 1 < tile.rows; ++j) {
@@ -61,13 +77,8 @@ double farthestFromEdges(const Database& database, const Camera& camera,
             return position[static_cast<std::size_t>(j + dj) * static_cast<std::size_t>(tile.columns) +
                             static_cast<std::size_t>(i + di)];
           };
-          const auto edges = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
-            approach(view, a, b, pixels, distance);
-            approach(view, b, c, pixels, distance);
-            approach(view, c, a, pixels, distance);
-          };
-          if (tile.bottomFaceValid(i, j)) edges(at(0, 0), at(1, 0), at(1, 1));
-          if (tile.topFaceValid(i, j)) edges(at(0, 0), at(1, 1), at(0, 1));
+          if (tile.bottomFaceValid(i, j)) approach(view, {at(0, 0), at(1, 0), at(1, 1)}, pixels, distance);
+          if (tile.topFaceValid(i, j)) approach(view, {at(0, 0), at(1, 1), at(0, 1)}, pixels, distance);
         }
       }
     }

@@ -146,10 +146,7 @@ TEST(Seams, engines_agree_and_nothing_shows_through) {
       for (std::size_t pixel = 0; pixel < fast.surface.size(); ++pixel)
         of_view += fast.surface[pixel] != reference.surface[pixel] ? 1 : 0;
       if (of_view * 100 > static_cast<int>(fast.surface.size())) {
-        const Camera& camera = options.camera;
-        std::printf("%s, view %d: %d pixels; eye %.9f,%.9f,%.4f look %.4f,%.4f,%.4f fov %.4f\n", area.name, n,
-                    of_view, camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading,
-                    camera.pitch, camera.roll, camera.field_of_view);
+        std::printf("%s, view %d: %d pixels; %s\n", area.name, n, of_view, inWords(options.camera).c_str());
       }
       differing += of_view;
       pixels += static_cast<int>(fast.surface.size());

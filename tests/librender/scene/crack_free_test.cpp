@@ -60,9 +60,8 @@ Outcome tryView(const Database& database, int n, const FullResolution* full, con
     outcome.posts = finding.posts;
   }
   if (!outcome.crack.empty() || outcome.worst_pixels > options.tolerance) {
-    std::printf("view %d: eye %.9f,%.9f,%.4f look %.4f,%.4f,%.4f fov %.4f: %.3f px %s\n", n,
-                camera.eye.latitude, camera.eye.longitude, camera.eye.height, camera.heading, camera.pitch,
-                camera.roll, camera.field_of_view, outcome.worst_pixels, outcome.crack.c_str());
+    std::printf("view %d: %s: %.3f px %s\n", n, inWords(camera).c_str(), outcome.worst_pixels,
+                outcome.crack.c_str());
   }
   return outcome;
 }
