@@ -20,7 +20,7 @@ class Scheduler {
         view_(view),
         options_(options),
         statistics_(statistics),
-        volume_(view) {}
+        volume_(view, options.tolerance) {}
 
   Result<Schedule> run() {
     DELTAZ_TRY_ASSIGN(const Node root, database_.root());
@@ -143,6 +143,8 @@ class Scheduler {
   const ViewTransform& view_;
   const ScheduleOptions& options_;
   FrameStatistics::Nodes& statistics_;
+  // A node's border follows coarser neighbours, which displaces it by up to the tolerance: so much more than
+  // the picture is in view.
   ViewVolume volume_;
   std::vector<CutNode> nodes_;
 };

@@ -2,8 +2,8 @@
 
 namespace deltaz {
 
-ViewVolume::ViewVolume(const ViewTransform& view) : eye_(view.eye) {
-  const double half_width = view.width / 2.0, half_height = view.height / 2.0;
+ViewVolume::ViewVolume(const ViewTransform& view, double margin) : eye_(view.eye) {
+  const double half_width = view.width / 2.0 + margin, half_height = view.height / 2.0 + margin;
   // |V| <= half_width * U and |W| <= half_height * U, written with the unit vectors of the view.
   const Vector3 across = view.right * view.pixels, downward = view.down * view.pixels;
   half_spaces_ = {{{view.forward, kHither},

@@ -15,7 +15,8 @@ inline constexpr double kHither = 0.1;
 
 class ViewVolume {
  public:
-  explicit ViewVolume(const ViewTransform& view);
+  // Widened by `margin` pixels on each side of the picture.
+  explicit ViewVolume(const ViewTransform& view, double margin = 0);
 
   // True only if nothing inside the sphere (Earth-centred, metres) can be in the picture.
   bool isOutside(const Vector3& centre, double radius) const;

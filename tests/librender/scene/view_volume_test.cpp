@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
+#include <utility>
 
 namespace deltaz {
 namespace {
@@ -39,6 +40,17 @@ TEST(ViewVolume, rejects_what_is_behind_or_beside) {
   EXPECT_TRUE(volume.isOutside(view.eye + view.ray(320, -300) * 1000, 100));
   EXPECT_TRUE(volume.isOutside(view.eye + view.ray(320, 660) * 1000, 100));
   EXPECT_FALSE(volume.isOutside(view.eye + view.ray(320, 180) * 1000, 0));
+}
+
+TEST(ViewVolume, a_margin_is_so_many_pixels_on_each_side) {
+  const ViewTransform view = someView();
+  const ViewVolume volume(view), wider(view, 8);
+  for (const auto& [j, i] : {std::pair{-5.0, 180.0}, {644.0, 180.0}, {320.0, -5.0}, {320.0, 364.0}}) {
+    EXPECT_TRUE(volume.isOutside(view.eye + view.ray(j, i) * 1000, 0));
+    EXPECT_FALSE(wider.isOutside(view.eye + view.ray(j, i) * 1000, 0));
+  }
+  EXPECT_TRUE(wider.isOutside(view.eye + view.ray(-9, 180) * 1000, 0));
+  EXPECT_TRUE(wider.isOutside(view.eye + view.ray(320, 369) * 1000, 0));
 }
 
 }  // namespace
