@@ -1,83 +1,73 @@
 // The full-resolution posts against the sources they came from, post for post and void for void: each grid of
-// the sources against the grid of the database that has its posts.
+// the database against all sources it was made from, the earlier named first.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "libdb/check/check_context.h"
 #include "libdb/check/parallel_report.h"
 #include "libdb/check/report_detail.h"
+#include "libdb/check/source_matching.h"
 #include "libdb/check/tile_loader.h"
-#include "libdb/source/grid_placement.h"
-#include "libdb/source/grid_surface.h"
 
 namespace deltaz {
 namespace {
 
-// Posts of two grids are the same ones if they lie within this fraction of their spacing: far below a
-// millimetre of any DEM, far above the rounding of a geotransform written as text.
-constexpr double kSamePostFraction = 1e-6;
-
 // Heights told in different quanta agree if they are this close beyond what rounding explains.
 constexpr double kSameHeight = 1e-7;  // metres
 
-struct Origins {
-  AxisOrigin x, y;
-};
-Origins originsOf(const GridHeader& header) {
-  if (header.kind == "geodetic") return {kLongitudeOrigin, kLatitudeOrigin};
-  return {kProjectedOrigin, kProjectedOrigin};
-}
-
-std::string optionOf(const AreaHeader& area, std::string_view name) {
-  for (const auto& [option, value] : area.options) {
-    if (option == name) return value;
-  }
-  return {};
-}
-
-// Where the source's first post lies on the database's axes; nothing if its posts are not posts of theirs.
-struct Offset {
-  std::int64_t column = 0, row = 0;
+// What is known of a source of a grid: its posts, or only where they stand.
+struct PlacedSource {
+  const RawGrid* posts = nullptr;
+  PostRectangle at;
+  std::size_t rank = 0;  // among the grid's sources
 };
 
-std::optional<std::int64_t> indexOn(const GridAxis& ours, const GridAxis& theirs, const AxisOrigin& origin) {
-  return indexOnAxis(ours, theirs, origin, kSamePostFraction * ours.spacing);
-}
-
-std::optional<Offset> offsetOf(const GridHeader& ours, const GridHeader& theirs) {
-  if (ours.kind != theirs.kind) return std::nullopt;
-  const Origins origins = originsOf(ours);
-  auto column = indexOn(ours.x_axis, theirs.x_axis, origins.x);
-  const auto row = indexOn(ours.y_axis, theirs.y_axis, origins.y);
-  if (!column || !row) return std::nullopt;
-  const double turn = 360 / ours.x_axis.spacing;
-  if (ours.kind == "geodetic" && std::abs(turn - std::round(turn)) < 1e-6) {
-    // The same meridian may have been named once from the west and once from the east.
-    const std::int64_t posts = std::llround(turn);
-    while (*column - ours.x_axis.first > posts / 2) *column -= posts;
-    while (ours.x_axis.first - *column > posts / 2) *column += posts;
-  }
-  return Offset{*column, *row};
-}
-
-class SourceRule {
+class GridRule {
  public:
-  SourceRule(CheckContext& context, const RawGrid& source, std::uint16_t grid)
+  // `matched` are the given sources of `grid`; `listed` of area.json's are the ones that count.
+  GridRule(CheckContext& context, std::uint16_t grid, std::span<const MatchedSource> matched,
+           std::span<const std::size_t> listed)
       : context_(context),
-        source_(source),
         grid_(grid),
         geometry_(context.grids[grid]),
+        places_(geometry_.header()),
         loader_(context),
         cut_(!optionOf(context.area, "bounds").empty()),
-        filled_(optionOf(context.area, "void") == "fill") {}
+        filled_(optionOf(context.area, "void") == "fill") {
+    std::vector<std::size_t> absent(listed.begin(), listed.end());
+    for (const MatchedSource& source : matched) {
+      const bool there = sameGeoreference(*source.source);
+      if (there) {
+        for (const std::size_t k : source.listed) absent.erase(std::find(absent.begin(), absent.end(), k));
+        given_.push_back({source.source, *places_.of(source.source->header),
+                          source.listed.empty() ? listed.size() : source.listed.front()});
+      }
+      elsewhere_ = elsewhere_ || !there;
+    }
+    std::sort(given_.begin(), given_.end(),
+              [](const PlacedSource& a, const PlacedSource& b) { return a.rank < b.rank; });
+    for (const std::size_t k : absent) {
+      const SourceDescription& source = geometry_.header().sources[k];
+      absent_.push_back({nullptr, places_.of(source), k});
+      absent_names_ += (absent_names_.empty() ? "" : ", ") + source.name;
+    }
+  }
 
   void run() {
-    if (!sameGeoreference()) {
-      addSkipped(context_.report,
-                 fmt::format("heights against {}, whose posts are elsewhere", context_.options.against_name));
+    const PostRectangle ours = rectangleOf(geometry_.header());
+    if (given_.empty()) {
+      skip(postsOf(ours));
       return;
     }
+    reach_ = given_.front().at;
+    for (const PlacedSource& source : given_) reach_ = hull(reach_, source.at);
+    for (const PlacedSource& source : absent_) reach_ = hull(reach_, source.at);
     checkExtent();
     std::vector<std::uint32_t> leaves;
     for (std::uint32_t number = 1; number <= context_.records.size(); ++number) {
@@ -89,23 +79,29 @@ class SourceRule {
     parallelReport(context_.report, leaves.size(), 16,
                    [&](std::size_t item, Report& report) { compareLeaf(leaves[item], report); });
     loader_.reportRefusedReads(context_.report);
-    const std::int64_t columns = std::min(columnsEnd(), geometry_.columnsAt(0).end) -
-                                 std::max(at_.column, geometry_.columnsAt(0).begin);
-    const std::int64_t rows =
-        std::min(rowsEnd(), geometry_.rowsAt(0).end) - std::max(at_.row, geometry_.rowsAt(0).begin);
-    const std::uint64_t expected =
-        columns > 0 && rows > 0 ? static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows) : 0;
-    const std::uint64_t compared = context_.report.posts_compared - before;
-    if (compared < expected) {
+    if (hidden_ > 0) skip(hidden_);
+    const auto expected = static_cast<std::uint64_t>(postsOf(intersection(ours, reach_)));
+    const std::uint64_t seen = context_.report.posts_compared - before + static_cast<std::uint64_t>(hidden_);
+    if (seen < expected) {
       addSkipped(context_.report,
-                 fmt::format("{} of {} posts against {}, since their nodes could not be read",
-                             expected - compared, expected, context_.options.against_name));
+                 fmt::format("{} of {} posts of grid {} against {}, since their nodes could not be read",
+                             expected - seen, expected, grid_, context_.options.against_name));
     }
   }
 
  private:
-  std::int64_t columnsEnd() const { return at_.column + source_.header.x_axis.count; }
-  std::int64_t rowsEnd() const { return at_.row + source_.header.y_axis.count; }
+  struct Nearby {
+    std::vector<PlacedSource> given, absent;
+  };
+
+  void skip(std::int64_t posts) {
+    std::string why = absent_names_.empty()
+                          ? "no source of theirs is given"
+                          : fmt::format("{}, where they come from, is not given", absent_names_);
+    if (elsewhere_) why = "the posts of the source are elsewhere";
+    addSkipped(context_.report,
+               fmt::format("{} posts of grid {} against their source: {}", posts, grid_, why));
+  }
 
   void complain(IssueCode code, std::string message) {
     IssueLocation where;
@@ -113,9 +109,9 @@ class SourceRule {
     context_.report.add(makeIssue(code, std::move(message), where));
   }
 
-  bool sameGeoreference() {
+  bool sameGeoreference(const RawGrid& source) {
     const GridHeader& ours = geometry_.header();
-    const GridHeader& theirs = source_.header;
+    const GridHeader& theirs = source.header;
     bool same = true;
     const auto differ = [&](std::string message) {
       complain(IssueCode::kSrcGeoreference, std::move(message));
@@ -132,30 +128,25 @@ class SourceRule {
       differ(fmt::format("the datum is {}, the source's {}", ours.horizontal_datum, theirs.horizontal_datum));
     }
     if (ours.kind != theirs.kind) return false;
-    const Origins origins = originsOf(ours);
-    if (!indexOn(ours.x_axis, theirs.x_axis, origins.x)) differ("columns are not where the source's are");
-    if (!indexOn(ours.y_axis, theirs.y_axis, origins.y)) differ("rows are not where the source's are");
-    if (same && !checkPatches()) {
+    if (!places_.columnOf(theirs.x_axis)) differ("columns are not where the source's are");
+    if (!places_.rowOf(theirs.y_axis)) differ("rows are not where the source's are");
+    if (same && !checkPatches(source)) {
       differ("posts of one projection lie at different places on the Earth");
     }
-    if (same) at_ = *offsetOf(ours, theirs);
     return same;
   }
 
   // Equal coordinates mean equal places: another projection with like axes lies elsewhere.
-  bool checkPatches() const {
-    if (geometry_.isGeodetic() || source_.patches == nullptr || !context_.positions_known) return true;
-    const GridGeometry theirs(source_.header, source_.patches);
-    const GridAxis& x = source_.header.x_axis;
-    const GridAxis& y = source_.header.y_axis;
-    const Offset offset = *offsetOf(geometry_.header(), source_.header);
+  bool checkPatches(const RawGrid& source) const {
+    if (geometry_.isGeodetic() || source.patches == nullptr || !context_.positions_known) return true;
+    const GridGeometry theirs(source.header, source.patches);
+    const GridAxis& x = source.header.x_axis;
+    const GridAxis& y = source.header.y_axis;
+    const PostRectangle at = *places_.of(source.header), ours = rectangleOf(geometry_.header());
     for (const std::int64_t column : {std::int64_t{0}, x.count / 2, x.count - 1}) {
       for (const std::int64_t row : {std::int64_t{0}, y.count / 2, y.count - 1}) {
-        const std::int64_t our_column = offset.column + column, our_row = offset.row + row;
-        const PostRange columns = geometry_.columnsAt(0), rows = geometry_.rowsAt(0);
-        if (our_column < columns.begin || our_column >= columns.end || our_row < rows.begin ||
-            our_row >= rows.end)
-          continue;
+        const std::int64_t our_column = at.columns.begin + column, our_row = at.rows.begin + row;
+        if (!ours.holds(our_column, our_row)) continue;
         const Vector3 difference = geometry_.placeAt(our_column, our_row).foot -
                                    theirs.placeAt(x.first + column, y.first + row).foot;
         if (length(difference) > kSamePlace) return false;
@@ -166,16 +157,16 @@ class SourceRule {
   static constexpr double kSamePlace = 1e-2;  // metres
 
   void checkExtent() {
-    const auto check = [&](const GridAxis& ours, std::int64_t first, std::int64_t count, const char* what) {
-      if (ours.first == first && ours.count == count) return;
+    const auto check = [&](const GridAxis& ours, PostRange theirs, const char* what) {
+      if (ours.first == theirs.begin && ours.count == theirs.size()) return;
       // An area that was cut on purpose may be smaller than its sources.
-      if (cut_ && ours.first >= first && ours.first + ours.count <= first + count) return;
+      if (cut_ && ours.first >= theirs.begin && ours.first + ours.count <= theirs.end) return;
       complain(IssueCode::kSrcExtent,
                fmt::format("the database has {} {} from {} on, the source {} from {} on", ours.count, what,
-                           ours.first, count, first));
+                           ours.first, theirs.size(), theirs.begin));
     };
-    check(geometry_.header().x_axis, at_.column, source_.header.x_axis.count, "columns");
-    check(geometry_.header().y_axis, at_.row, source_.header.y_axis.count, "rows");
+    check(geometry_.header().x_axis, reach_.columns, "columns");
+    check(geometry_.header().y_axis, reach_.rows, "rows");
   }
 
   void compareLeaf(std::uint32_t number, Report& report) {
@@ -189,13 +180,20 @@ class SourceRule {
     const LoadedTile& tile = *loaded.value();
     const std::int64_t leaf = geometry_.header().leaf_cells;
     const PostRange columns = geometry_.nodeColumnsAt(0), rows = geometry_.nodeRowsAt(0);
+    const PostRectangle here = intersection({tile.columns, tile.rows}, reach_);
+    Nearby nearby;
+    for (const PlacedSource& source : given_) {
+      if (postsOf(intersection(source.at, here)) > 0) nearby.given.push_back(source);
+    }
+    for (const PlacedSource& source : absent_) {
+      if (postsOf(intersection(source.at, here)) > 0) nearby.absent.push_back(source);
+    }
     // A post on a shared border belongs to one leaf only, so that it is compared and counted once.
-    for (std::int64_t row = std::max(tile.rows.begin, at_.row); row < std::min(tile.rows.end, rowsEnd());
-         ++row) {
+    for (std::int64_t row = here.rows.begin; row < here.rows.end; ++row) {
       if (ownerOf(row, leaf, rows) != record.y) continue;
-      for (std::int64_t column = std::max(tile.columns.begin, at_.column);
-           column < std::min(tile.columns.end, columnsEnd()); ++column) {
-        if (ownerOf(column, leaf, columns) == record.x) comparePost(number, tile, column, row, report);
+      for (std::int64_t column = here.columns.begin; column < here.columns.end; ++column) {
+        if (ownerOf(column, leaf, columns) == record.x)
+          comparePost(number, tile, column, row, nearby, report);
       }
     }
   }
@@ -213,11 +211,22 @@ class SourceRule {
   }
 
   void comparePost(std::uint32_t number, const LoadedTile& tile, std::int64_t column, std::int64_t row,
-                   Report& report) {
+                   const Nearby& nearby, Report& report) {
+    const auto holds = [&](const PlacedSource& source) { return source.at.holds(column, row); };
+    // Its height may be that of a source nobody has shown.
+    if (std::any_of(nearby.absent.begin(), nearby.absent.end(), holds)) {
+      ++hidden_;
+      return;
+    }
     ++report.posts_compared;
-    const std::int64_t source_column = column - at_.column;
-    const std::int64_t source_row = row - at_.row;
-    const bool valid = tile.isValid(column, row), source_valid = source_.isValid(source_column, source_row);
+    const bool valid = tile.isValid(column, row);
+    // The first of the sources that has a height there; what none covers is void.
+    const auto found =
+        std::find_if(nearby.given.begin(), nearby.given.end(), [&](const PlacedSource& source) {
+          return holds(source) &&
+                 source.posts->isValid(column - source.at.columns.begin, row - source.at.rows.begin);
+        });
+    const bool source_valid = found != nearby.given.end();
     if (!valid && !source_valid) return;
     if (filled_ && !source_valid) return;
     const auto where = [&] {
@@ -240,15 +249,17 @@ class SourceRule {
       });
       return;
     }
-    const std::int32_t height = tile.height(column, row),
-                       source_height = source_.height(source_column, source_row);
-    const bool same_quantum = geometry_.header().quantum == source_.header.quantum;
+    const GridHeader& ours_header = geometry_.header();
+    const GridHeader& theirs_header = found->posts->header;
+    const std::int32_t height = tile.height(column, row);
+    const std::int32_t source_height =
+        found->posts->height(column - found->at.columns.begin, row - found->at.rows.begin);
+    const bool same_quantum = ours_header.quantum == theirs_header.quantum;
     if (same_quantum && height == source_height) return;
     const double ours = geometry_.metres(height);
-    const double theirs = static_cast<double>(source_height) * source_.header.quantum.value();
+    const double theirs = static_cast<double>(source_height) * theirs_header.quantum.value();
     const double metres = std::abs(ours - theirs);
-    if (!same_quantum &&
-        metres <= geometry_.header().height_error + source_.header.height_error + kSameHeight)
+    if (!same_quantum && metres <= ours_header.height_error + theirs_header.height_error + kSameHeight)
       return;
     addLazily(report, IssueCode::kSrcHeight, metres, [&] {
       return makeIssue(IssueCode::kSrcHeight,
@@ -258,103 +269,17 @@ class SourceRule {
   }
 
   CheckContext& context_;
-  const RawGrid& source_;
   const std::uint16_t grid_;
   const GridGeometry& geometry_;
+  const SourcePlaces places_;
   TileLoader loader_;
   const bool cut_, filled_;
-  Offset at_;
+  std::vector<PlacedSource> given_, absent_;
+  std::string absent_names_;
+  bool elsewhere_ = false;
+  PostRectangle reach_;                  // of all sources
+  std::atomic<std::int64_t> hidden_{0};  // posts that sources cover which are not given
 };
-
-// A resampled grid has no source's posts: its surface may lie as far from them as it says, and no farther.
-void checkResampled(CheckContext& context, std::uint16_t grid) {
-  const GridGeometry& geometry = context.grids[grid];
-  const GridHeader& header = geometry.header();
-  const std::string& name = context.options.against_name;
-  TileLoader loader(context);
-  RawGrid made;
-  made.header = header;
-  const auto posts = static_cast<std::size_t>(header.x_axis.count * header.y_axis.count);
-  made.heights.assign(posts, 0);
-  made.valid.assign(posts, 0);
-  for (std::uint32_t number = 1; number <= context.records.size(); ++number) {
-    const NodeRecord& record = context.record(number);
-    if (record.type != NodeType::kTerrain || record.grid != grid || record.level != 0) continue;
-    const auto loaded = loader.load(number);
-    if (!loaded.ok()) {
-      addSkipped(context.report, fmt::format("heights against {}, since not all nodes could be read", name));
-      loader.reportRefusedReads(context.report);
-      return;
-    }
-    const LoadedTile& tile = *loaded.value();
-    for (std::int64_t row = tile.rows.begin; row < tile.rows.end; ++row) {
-      for (std::int64_t column = tile.columns.begin; column < tile.columns.end; ++column) {
-        const auto at = static_cast<std::size_t>((row - header.y_axis.first) * header.x_axis.count + column -
-                                                 header.x_axis.first);
-        made.heights[at] = tile.height(column, row);
-        made.valid[at] = tile.isValid(column, row) ? 1 : 0;
-      }
-    }
-  }
-  const auto systemOf = [](const GridHeader& of) {
-    return parseReferenceSystem(of.crs_wkt, "area.json", of.coordinate_epoch);
-  };
-  const Result<ReferenceSystem> system = systemOf(header);
-  std::vector<PlacedGrid> placed;
-  for (std::size_t k = 0; k < context.options.against_count && system.ok(); ++k) {
-    const Result<ReferenceSystem> theirs = systemOf(context.options.against[k].header);
-    if (theirs.ok()) placed.push_back({&context.options.against[k], theirs.value(), name});
-  }
-  const Result<SurfaceDifference> difference = system.ok()
-                                                   ? differenceFrom(made, system.value(), placed, true)
-                                                   : Result<SurfaceDifference>(system.error());
-  if (!difference.ok() || difference.value().posts == 0) {
-    addSkipped(context.report,
-               fmt::format("heights against {}: {}", name,
-                           difference.ok() ? "it has no posts there" : difference.error().message()));
-    return;
-  }
-  context.report.posts_compared += difference.value().posts;
-  const double largest = difference.value().largest, stated = header.resampling->largest_error;
-  if (largest <= stated * (1 + 1e-9) + kSameHeight) return;
-  IssueLocation where;
-  where.file = std::string(kAreaFileName);
-  context.report.add(
-      makeIssue(IssueCode::kSrcHeight,
-                fmt::format("the resampled grid {} lies {} m from a post of its sources, and states {} m",
-                            grid, largest, stated),
-                where, largest));
-}
-
-bool sameFiles(const GridHeader& a, const GridHeader& b) {
-  return std::equal(a.sources.begin(), a.sources.end(), b.sources.begin(), b.sources.end(),
-                    [](const auto& one, const auto& other) { return one.content == other.content; });
-}
-
-// The grid that has the source's posts, and names its files if several have such posts; if there is none, the
-// one in its place, so that the differences can be told.
-std::uint16_t gridFor(const CheckContext& context, const RawGrid& source, std::size_t place) {
-  std::size_t best = std::min(place, context.grids.size() - 1);
-  std::int64_t most_shared = 0;
-  bool names_files = false;
-  for (std::size_t grid = 0; grid < context.grids.size(); ++grid) {
-    const GridHeader& ours = context.grids[grid].header();
-    const std::optional<Offset> at = offsetOf(ours, source.header);
-    if (!at || ours.resampling) continue;
-    const auto shared = [](const GridAxis& axis, std::int64_t first, std::int64_t count) {
-      return std::max<std::int64_t>(
-          0, std::min(axis.first + axis.count, first + count) - std::max(axis.first, first));
-    };
-    const std::int64_t posts = shared(ours.x_axis, at->column, source.header.x_axis.count) *
-                               shared(ours.y_axis, at->row, source.header.y_axis.count);
-    const bool names = posts > 0 && sameFiles(ours, source.header);
-    if (names != names_files ? names_files : posts <= most_shared) continue;
-    most_shared = posts;
-    names_files = names;
-    best = grid;
-  }
-  return static_cast<std::uint16_t>(best);
-}
 
 }  // namespace
 
@@ -369,10 +294,25 @@ void checkAgainstSource(CheckContext& context) {
     checkResampled(context, 0);
     return;
   }
-  for (std::size_t k = 0; k < context.options.against_count; ++k) {
-    const RawGrid& source = context.options.against[k];
-    SourceRule(context, source, gridFor(context, source, k)).run();
+  SourceMatching matching = matchSources(context);
+  for (const std::string& name : matching.outside) {
+    context.report.notes.push_back(
+        fmt::format("{} has no heights within the bounds the area was cut to: nothing to compare", name));
   }
+  const auto listed =
+      std::stable_partition(matching.matched.begin(), matching.matched.end(),
+                            [](const MatchedSource& source) { return source.listed.empty(); });
+  for (std::uint16_t grid = 0; grid < context.grids.size(); ++grid) {
+    std::vector<MatchedSource> its;
+    std::copy_if(listed, matching.matched.end(), std::back_inserter(its),
+                 [grid](const MatchedSource& source) { return source.grid == grid; });
+    std::vector<std::size_t> all(context.grids[grid].header().sources.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    GridRule(context, grid, its, all).run();
+  }
+  // What is no source of any grid is told how it differs from the one in its place.
+  for (auto source = matching.matched.begin(); source != listed; ++source)
+    GridRule(context, source->grid, std::span(&*source, 1), {}).run();
 }
 
 }  // namespace deltaz

@@ -10,7 +10,9 @@
 #include <unistd.h>
 
 #include "formats/file_system.h"
+#include "libdb/source/full_turn.h"
 #include "libdb/source/gdal_session.h"
+#include "libdb/source/grid_cutting.h"
 #include "libdb/source/height_units.h"
 #include "libdb/source/reference_system.h"
 #include "libdb/source/stored_values.h"
@@ -56,6 +58,23 @@ std::array<double, 6> geotransformOf(const GridHeader& header) {
           -header.y_axis.spacing};
 }
 
+// Whole columns from the source's first to the grid's. A meridian has many longitudes: the source's own where
+// it has the grid's columns, else those near its own, as long as they are ordinary ones.
+double turnLike(const SourceDescription& source, const GridHeader& header, double columns) {
+  const double count = static_cast<double>(header.x_axis.count);
+  if (header.kind != "geodetic") return std::round(columns);
+  const double turn = 360 / source.geotransform[1];
+  for (const double turns : {0.0, 1.0, -1.0, 2.0, -2.0}) {
+    const double first = std::round(columns + turns * turn);
+    if (first >= 0 && first + count <= static_cast<double>(source.columns)) return first;
+  }
+  const double near = std::round(columns - turn * std::round(columns / turn));
+  const double west = source.geotransform[0] + near * source.geotransform[1];
+  const double east = west + count * source.geotransform[1];
+  const bool ordinary = west >= -180 - source.geotransform[1] && east <= 360 + source.geotransform[1];
+  return ordinary ? near : std::round(columns);
+}
+
 // The same in the words of the first source, as far as it goes: its own numbers, moved by whole posts.
 std::array<double, 6> geotransformLike(const SourceDescription& source, const GridHeader& header) {
   std::array<double, 6> transform = source.geotransform;
@@ -63,10 +82,8 @@ std::array<double, 6> geotransformLike(const SourceDescription& source, const Gr
   const bool south_up = transform[5] > 0;
   const double rows = static_cast<double>(header.y_axis.count);
   const double first_row = south_up ? exact[3] + rows * exact[5] : exact[3];
-  double columns_off = (exact[0] - transform[0]) / transform[1];
-  const double turn = 360 / transform[1];
-  if (header.kind == "geodetic") columns_off -= turn * std::round(columns_off / turn);
-  transform[0] += std::round(columns_off) * transform[1];
+  const double columns_off = turnLike(source, header, (exact[0] - transform[0]) / transform[1]);
+  transform[0] += columns_off * transform[1];
   transform[3] += std::round((first_row - transform[3]) / transform[5]) * transform[5];
   return transform;
 }
@@ -289,7 +306,11 @@ Status exportTerrain(const Database& database, const std::string& target, const 
   DELTAZ_TRY_ASSIGN(const PathType parent, files.typeOf(parentPath(target)));
   if (parent != PathType::kDirectory)
     return accessError(parentPath(target), "cannot write here", "there is no such folder", "Make it first");
-  DELTAZ_TRY_ASSIGN(const RawGrid grid, readGrid(database, options.grid, options.level));
+  DELTAZ_TRY_ASSIGN(RawGrid grid, readGrid(database, options.grid, options.level));
+  // The import repeats the first column of a grid that goes round the Earth: no source has it.
+  if (options.level == 0 && hasRepeatedColumn(grid.header)) {
+    cutTo(grid, {0, grid.header.x_axis.count - 1, 0, grid.header.y_axis.count});
+  }
 
   const std::string temporary =
       joinPath(parentPath(target), fmt::format(".{}.tmp-{}", baseName(target), ::getpid()));

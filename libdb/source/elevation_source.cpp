@@ -6,6 +6,7 @@
 #include <new>
 
 #include "libdb/access/grid_geometry.h"
+#include "libdb/source/full_turn.h"
 #include "libdb/source/gdal_session.h"
 #include "libdb/source/grid_cutting.h"
 #include "libdb/source/grid_placement.h"
@@ -32,8 +33,12 @@ class AreaReader {
   Result<SourceArea> run(std::span<const std::string> paths) {
     if (paths.empty()) return usageError("DEM", "no source is named");
     DELTAZ_TRY(readRasters(paths));
+    if (!options_.order.empty()) putInOrder();
     DELTAZ_TRY(chooseDatum());
-    DELTAZ_TRY_ASSIGN(rasters_, joinRasters(std::move(rasters_), result_.warnings));
+    if (options_.join) {
+      DELTAZ_TRY_ASSIGN(rasters_, joinRasters(std::move(rasters_), result_.warnings));
+    }
+    for (SourceRaster& raster : rasters_) closeTurn(raster.grid);
     compareVerticalDatums();
     if (options_.bounds) DELTAZ_TRY(cut());
     for (SourceRaster& raster : rasters_) DELTAZ_TRY(placeOnEarth(raster));
@@ -55,6 +60,19 @@ class AreaReader {
       }
     }
     return Success{};
+  }
+
+  void putInOrder() {
+    const auto placeOf = [this](const SourceRaster& raster) {
+      const SourceDescription& source = raster.grid.header.sources.front();
+      return std::find_if(options_.order.begin(), options_.order.end(),
+                          [&](const SourceDescription& known) {
+                            return known.name == source.name && known.content == source.content;
+                          }) -
+             options_.order.begin();
+    };
+    std::stable_sort(rasters_.begin(), rasters_.end(),
+                     [&](const SourceRaster& a, const SourceRaster& b) { return placeOf(a) < placeOf(b); });
   }
 
   // All grids of an area refer to one datum: that of the target system, else of the first source.
@@ -88,19 +106,25 @@ class AreaReader {
   Status cut() {
     std::vector<SourceRaster> kept;
     for (SourceRaster& raster : rasters_) {
-      DELTAZ_TRY_ASSIGN(const PostWindow window,
-                        windowWithin(raster.grid.header, raster.system, area_, *options_.bounds,
-                                     options_.allow_ballpark, raster.path));
-      const auto hasPost = [&] {
-        return raster.grid.valid.empty() || std::find(raster.grid.valid.begin(), raster.grid.valid.end(),
-                                                      std::uint8_t{1}) != raster.grid.valid.end();
-      };
-      if (window.columns > 0) cutTo(raster.grid, window);
-      if (window.columns > 0 && hasPost()) {
-        kept.push_back(std::move(raster));
-      } else {
+      DELTAZ_TRY_ASSIGN(const std::vector<PostWindow> windows,
+                        windowsWithin(raster.grid.header, raster.system, area_, *options_.bounds,
+                                      options_.allow_ballpark, raster.path));
+      const std::string path = raster.path;
+      const std::size_t before = kept.size();
+      for (std::size_t k = 0; k < windows.size(); ++k) {
+        SourceRaster part = k + 1 < windows.size() ? raster : std::move(raster);
+        cutTo(part.grid, windows[k]);
+        const auto& valid = part.grid.valid;
+        if (valid.empty() || std::find(valid.begin(), valid.end(), std::uint8_t{1}) != valid.end())
+          kept.push_back(std::move(part));
+      }
+      if (kept.size() == before) {
         result_.warnings.push_back(
-            fmt::format("{}: it has no elevations within --bounds, and is left out", raster.path));
+            fmt::format("{}: it has no elevations within --bounds, and is left out", path));
+      } else if (kept.size() > before + 1) {
+        result_.warnings.push_back(fmt::format(
+            "{}: its east and its west side lie within --bounds, but nothing between; they become two grids",
+            path));
       }
     }
     if (kept.empty()) return usageError("--bounds", "no source has elevations there");

@@ -55,6 +55,10 @@ struct SourceOptions {
   std::string datum = {};
   VoidPolicy voids = VoidPolicy::kKeep;
   bool allow_ballpark = false;  // accept a change of datum that can only be guessed, with a warning
+  // Sources known from here (name and content) come in this order and before all others, however they were
+  // named: to read again what an area was built from.
+  std::vector<SourceDescription> order = {};
+  bool join = true;  // false: one grid a raster, whatever lattice they share
 };
 
 // A whole grid of posts in memory: the report's raw gaming area.

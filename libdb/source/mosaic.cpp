@@ -8,6 +8,7 @@
 
 #include "formats/terrain_segment.h"
 #include "libdb/access/grid_geometry.h"
+#include "libdb/source/full_turn.h"
 #include "libdb/source/grid_placement.h"
 #include "libdb/source/height_units.h"
 #include "libdb/source/simple_fraction.h"
@@ -26,13 +27,6 @@ struct Origins {
 Origins originsOf(const GridHeader& header) {
   if (header.kind == "geodetic") return {kLongitudeOrigin, kLatitudeOrigin};
   return {kProjectedOrigin, kProjectedOrigin};
-}
-
-// Posts in a full turn of longitude, 0 if that is no whole number or the axis is no longitude.
-std::int64_t postsRound(const GridHeader& header) {
-  if (header.kind != "geodetic") return 0;
-  const double posts = 360 / header.x_axis.spacing;
-  return std::abs(posts - std::round(posts)) < 1e-6 ? std::llround(posts) : 0;
 }
 
 bool isWhole(const SourceDescription& source) {
@@ -115,7 +109,7 @@ std::vector<std::vector<Placed>> groupsOf(const std::vector<SourceRaster>& raste
     for (std::size_t k = first + 1; k < rasters.size(); ++k) {
       if (!taken[k]) offsets[k] = offsetOn(lattice, rasters[k]);
     }
-    const std::int64_t turn = postsRound(lattice.grid.header);
+    const std::int64_t turn = columnsInTurn(lattice.grid.header);
     std::vector<Placed> group = {
         {first, {lattice.grid.header.x_axis.first, lattice.grid.header.y_axis.first}}};
     taken[first] = true;
@@ -193,7 +187,7 @@ class Join {
     header.y_axis.count = north - south;
     west_ = west;
     south_ = south;
-    const std::int64_t turn = postsRound(header);
+    const std::int64_t turn = columnsInTurn(header);
     if (turn > 0 && header.x_axis.count > turn + 1)
       return refusedSource(joined_.path, "the sources joined go more than once round the Earth");
     if (header.x_axis.count > kMostPosts / header.y_axis.count)

@@ -59,11 +59,15 @@ class Resampler {
     describe();
     DELTAZ_TRY(chooseAxes());
     if (target_.bounds) {
-      DELTAZ_TRY_ASSIGN(const PostWindow window,
-                        windowWithin(made_.grid.header, target_.system, area_, *target_.bounds,
-                                     target_.allow_ballpark, made_.path));
-      if (window.columns == 0) return usageError("--bounds", "no source has elevations there");
-      cutTo(made_.grid, window);
+      DELTAZ_TRY_ASSIGN(const std::vector<PostWindow> windows,
+                        windowsWithin(made_.grid.header, target_.system, area_, *target_.bounds,
+                                      target_.allow_ballpark, made_.path));
+      if (windows.empty()) return usageError("--bounds", "no source has elevations there");
+      if (windows.size() > 1) {
+        return usageError("--bounds", "a resampled grid would come in two parts", "no source reaches across",
+                          "Build each part by itself");
+      }
+      cutTo(made_.grid, windows.front());
     }
     DELTAZ_TRY(takeHeights());
     // A filled post has a part in the surface over the sources' posts beside it, so filling comes first.

@@ -1,5 +1,6 @@
 """Several sources as one area, and the options that say how sources become grids."""
 import json
+import math
 import pathlib
 import subprocess
 import zipfile
@@ -140,6 +141,49 @@ def a_cut_area_holds_the_sources_own_posts(folder):
     run("dbbuild", "export", area, "-o", exported)
     gdal("gdal_translate", "-q", "-srcwin", "20", "30", "81", "61", RAINIER, window)
     same_raster(window, exported, folder)
+
+
+def globe(folder, name, west, columns, registration):
+    """A height for each meridian, at whole degrees or between them."""
+    shift = 0.5 if registration == "area" else 0
+    lines = [f"ncols {columns}", "nrows 20", f"xllcorner {west - 0.5 + shift}", "yllcorner 20", "cellsize 1"]
+    for row in range(20):
+        lines.append(" ".join(str((west + column) % 360 + 7 * row) for column in range(columns)))
+    text = folder / f"{name}.asc"
+    text.write_text("\n".join(lines) + "\n")
+    gdal("gdal_translate", "-q", "-ot", "Int16", "-a_srs", "EPSG:4326", text, folder / f"{name}.tif")
+    return folder / f"{name}.tif"
+
+
+@case
+def a_cut_across_the_seam_of_a_globe_has_both_sides(folder):
+    east, west = globe(folder, "east", 0, 181, "post"), globe(folder, "west", -180, 181, "post")
+    for sources, bounds in (([globe(folder, "shared", -180, 361, "post")], "170,25,-170,30"), ([globe(folder, "cells", -180, 360, "area")], "170,25,-170,30"),
+                            ([globe(folder, "from_0", 0, 360, "post")], "-10,25,10,30"), ([east, west], "170,25,-170,30"), ([west, east], "170,25,-170,30")):
+        area, exported = folder / "cut.dz", folder / "cut.tif"
+        run("dbbuild", "terrain", *sources, "-o", area, "--bounds", bounds, "--overwrite")
+        run("dbcheck", area, "--level", "all", "--against", *sources)
+        run("dbbuild", "export", area, "-o", exported, "--overwrite")
+        there = json.loads(gdal("gdalinfo", "-json", exported))
+        columns, rows = there["size"]
+        first = math.floor(there["geoTransform"][0] + 0.75)
+        require(-180 <= first < 180 and columns in (21, 22) and rows == 7, there["size"])
+        above = 40 - round(there["geoTransform"][3])
+        wanted = [(first + column) % 360 + 7 * (above + row) for row in range(rows) for column in range(columns)]
+        require(list(values(exported, folder)) == wanted, f"{sources[0].name}: {list(values(exported, folder))[:30]} instead of {wanted[:30]}")
+
+
+@case
+def a_globe_without_a_shared_meridian_is_closed_and_comes_back_as_it_was(folder):
+    cells = globe(folder, "cells", -180, 360, "area")
+    east, west = globe(folder, "east", 0, 180, "area"), globe(folder, "west", -180, 180, "area")
+    for sources in ([cells], [east, west]):
+        area, exported = folder / "globe.dz", folder / "globe.tif"
+        run("dbbuild", "terrain", *sources, "-o", area, "--overwrite")
+        require(info(area)["grids"][0]["longitude"]["count"] == 361, "a slit is left at the antimeridian")
+        run("dbcheck", area, "--level", "all", "--against", *sources)
+        run("dbbuild", "export", area, "-o", exported, "--overwrite")
+        same_raster(cells, exported, folder)
 
 
 @case

@@ -43,6 +43,68 @@ TEST(Bounds, across_the_antimeridian) {
   EXPECT_EQ(grid.height(0, 0), 2 * 7);
 }
 
+// Posts at whole degrees all round the Earth, `columns` of them from `west` on; a height for each meridian.
+TestRaster globe(double west, int columns) {
+  TestRaster raster;
+  raster.columns = columns;
+  raster.rows = 21;
+  raster.transform = {west - 0.5, 1, 0, 10.5, 0, -1};
+  for (int row = 20; row >= 0; --row) {
+    for (int column = 0; column < columns; ++column)
+      raster.values.push_back(std::fmod(west + column + 720, 360) + 10 * row);
+  }
+  return raster;
+}
+
+TEST(Bounds, of_a_grid_that_goes_round_the_earth_run_on_over_its_seam) {
+  const TemporaryDirectory folder;
+  struct Case {
+    double west;
+    int columns;
+    double from, to;
+  };
+  for (const Case& c : {Case{-180, 361, 170, -170}, Case{-180, 360, 170, -170}, Case{0, 360, -10, 10},
+                        Case{0, 361, -10, 10}, Case{-180, 360, 100, 50}}) {
+    const std::string path = makeRaster(folder, globe(c.west, c.columns));
+    const RawGrid grid = readOne(path, {.bounds = SourceBounds{c.from, -5, c.to, 5}});
+    const double width = std::fmod(c.to - c.from + 360, 360);
+    EXPECT_EQ(grid.header.x_axis.count, static_cast<std::int64_t>(width) + 1) << c.west << ", " << c.columns;
+    EXPECT_EQ(postCoordinate(grid.header.x_axis, kLongitudeOrigin, grid.header.x_axis.first), c.from);
+    for (std::int64_t row = 0; row < grid.header.y_axis.count; ++row) {
+      for (std::int64_t column = 0; column < grid.header.x_axis.count; ++column)
+        ASSERT_EQ(grid.height(column, row), std::fmod(c.from + static_cast<double>(column) + 720, 360) +
+                                                10.0 * (static_cast<double>(row) + 5));
+    }
+  }
+}
+
+TEST(Bounds, a_shared_meridian_keeps_the_height_that_either_side_has) {
+  const TemporaryDirectory folder;
+  TestRaster raster = globe(-180, 361);
+  for (std::size_t row = 0; row < 21; ++row) raster.values[row * 361 + (row % 2 == 0 ? 0 : 360)] = -32768;
+  raster.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const RawGrid grid = readOne(makeRaster(folder, raster), {.bounds = SourceBounds{170, -10, -170, 10}});
+  ASSERT_EQ(grid.header.x_axis.count, 21);
+  for (std::int64_t row = 0; row < 21; ++row) {
+    EXPECT_TRUE(grid.isValid(10, row)) << row;
+    EXPECT_EQ(grid.height(10, row), 180 + 10 * row);
+  }
+}
+
+// Nothing from 100 degrees east to 100 west: what bounds across the antimeridian leave is in two parts.
+TEST(Bounds, both_sides_of_ground_that_is_not_there_are_kept) {
+  const TemporaryDirectory folder;
+  TestRaster raster = globe(-100, 201);
+  std::vector<std::string> warnings;
+  const SourceArea area = readAll({makeRaster(folder, raster)}, {.bounds = SourceBounds{90, -5, -95, 5}});
+  ASSERT_EQ(area.grids.size(), 2u);
+  EXPECT_EQ(area.warnings.size(), 1u);
+  EXPECT_EQ(area.grids[0].header.x_axis.count, 6);
+  EXPECT_EQ(area.grids[0].height(0, 0), 260 + 50);
+  EXPECT_EQ(area.grids[1].header.x_axis.count, 11);
+  EXPECT_EQ(area.grids[1].height(0, 0), 90 + 50);
+}
+
 TEST(Bounds, of_a_projected_grid) {
   const TemporaryDirectory folder;
   TestRaster raster = plane(400, 400);

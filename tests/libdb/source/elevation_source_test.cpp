@@ -189,5 +189,27 @@ TEST(ElevationSource, a_file_cut_short_is_refused) {
   EXPECT_FALSE(readElevationSource(path, {}).ok());
 }
 
+TEST(ElevationSource, the_slit_of_a_grid_that_goes_round_the_earth_is_closed) {
+  const TemporaryDirectory folder;
+  TestRaster raster;
+  raster.columns = 360;
+  raster.rows = 4;
+  raster.transform = {-180, 1, 0, 2, 0, -1};
+  raster.values.assign(360 * 4, 100);
+  raster.values[0] = -32768;
+  raster.values[360] = 7;
+  raster.change = [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-32768); };
+  const RawGrid grid = readOne(makeRaster(folder, raster));
+  ASSERT_EQ(grid.header.x_axis.count, 361);
+  ASSERT_EQ(grid.heights.size(), 361u * 4);
+  EXPECT_FALSE(grid.isValid(360, 3));
+  EXPECT_EQ(grid.height(360, 2), 7);
+  EXPECT_EQ(grid.height(0, 2), 7);
+  EXPECT_EQ(grid.height(359, 2), 100);
+  raster.columns = 359;
+  raster.values.assign(359 * 4, 100);
+  EXPECT_EQ(readOne(makeRaster(folder, raster)).header.x_axis.count, 359) << "a column is missing there";
+}
+
 }  // namespace
 }  // namespace deltaz
