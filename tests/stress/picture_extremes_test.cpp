@@ -122,16 +122,6 @@ TEST_P(ExtremePicture, levels_of_detail_keep_the_tolerance) {
   }
 }
 
-NamedGrid hills() {
-  SyntheticGridOptions options;
-  options.south = 46.8;
-  options.west = -121.8;
-  options.spacing_latitude = options.spacing_longitude = {3, 1};
-  options.lowest = 500;
-  options.highest = 3200;
-  return {"hills", syntheticGrid(options), 16};
-}
-
 TEST(PictureExtremes, engines_agree_from_one_centimetre_to_ten_thousand_kilometres) {
   const BuiltGrid area = built(hills());
   for (const double above : {0.01, 0.1, 1.7, 100.0, 1e4, 1e6, 1e7}) {

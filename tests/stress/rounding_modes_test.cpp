@@ -73,16 +73,6 @@ class RoundingModes : public testing::TestWithParam<Mode> {};
 INSTANTIATE_TEST_SUITE_P(, RoundingModes, testing::ValuesIn(modes()),
                          [](const auto& mode) { return mode.param.name; });
 
-NamedGrid hills() {
-  SyntheticGridOptions options;
-  options.south = 46.8;
-  options.west = -121.8;
-  options.spacing_latitude = options.spacing_longitude = {3, 1};
-  options.lowest = 500;
-  options.highest = 3200;
-  return {"hills", syntheticGrid(options), 16};
-}
-
 // A few that differ in what rounding could harm.
 std::vector<NamedGrid> someGrids() {
   std::vector<NamedGrid> grids = {hills()};

@@ -162,4 +162,14 @@ RawGrid projectedGrid(std::int64_t columns, std::int64_t rows, double spacing) {
   return grid;
 }
 
+NamedGrid hills() {
+  SyntheticGridOptions options;
+  options.south = 46.8;
+  options.west = -121.8;
+  options.spacing_latitude = options.spacing_longitude = {3, 1};
+  options.lowest = 500;
+  options.highest = 3200;
+  return {"hills", syntheticGrid(options), 16};
+}
+
 }  // namespace deltaz

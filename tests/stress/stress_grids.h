@@ -40,4 +40,7 @@ RawGrid alternatingGrid(std::int32_t height, Rational quantum);
 // of control points on the ellipsoid's surface.
 RawGrid projectedGrid(std::int64_t columns, std::int64_t rows, double spacing);
 
+// An ordinary country, for what is harmed by the host and not by the grid.
+NamedGrid hills();
+
 }  // namespace deltaz
