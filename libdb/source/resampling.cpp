@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
+#include <unistd.h>
 #include <vector>
 
 #include "formats/terrain_segment.h"
@@ -11,6 +11,7 @@
 #include "libdb/source/grid_cutting.h"
 #include "libdb/source/grid_placement.h"
 #include "libdb/source/grid_surface.h"
+#include "libdb/source/raster_extent.h"
 #include "libdb/source/source_error.h"
 #include "libdb/source/void_filling.h"
 
@@ -19,8 +20,14 @@ namespace deltaz {
 namespace {
 
 constexpr double kMetresPerDegree = 111319.49;
-constexpr int kOutlinePoints = 256;  // along each side of a raster
+constexpr double kDegree = 0.017453292519943295;
 constexpr std::int64_t kMostPosts = std::int64_t{1} << 32;
+// What building from a post takes at its peak, measured.
+constexpr double kBytesPerPost = 12;
+constexpr double kMemoryShare = 0.75;  // of the machine's
+// A large grid with this many posts for each of its sources' is a slip of the spacing.
+constexpr double kLargePosts = 1e8;
+constexpr double kMostPostsPerPost = 50;
 
 // The largest customary number not above `value`: 1, 2, 2.5 or 5 times a power of ten.
 double roundSpacing(double value) {
@@ -35,7 +42,8 @@ double roundSpacing(double value) {
 // The same for arc-seconds, in degrees: DEMs have 1/9, 1/3, 1, 3, ...
 double roundArcSeconds(double degrees) {
   double best = 0;
-  for (const double seconds : {1.0 / 27, 1.0 / 9, 0.2, 1.0 / 3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 30.0}) {
+  for (const double seconds : {1.0 / 27, 1.0 / 9, 0.2, 1.0 / 3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 30.0,
+                               60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0}) {
     if (seconds / 3600 <= degrees * 1.05) best = seconds / 3600;
   }
   return best > 0 ? best : degrees;
@@ -69,6 +77,7 @@ class Resampler {
       }
       cutTo(made_.grid, windows.front());
     }
+    DELTAZ_TRY(checkSize());
     DELTAZ_TRY(takeHeights());
     // A filled post has a part in the surface over the sources' posts beside it, so filling comes first.
     const std::uint64_t filled = target_.fill_voids ? fillVoidPosts(made_.grid) : 0;
@@ -123,46 +132,21 @@ class Resampler {
     return Spacings{value, value};
   }
 
-  // The rectangle of all rasters' outlines in the target system.
+  // The rectangle of all rasters in the target system.
   Status chooseAxes() {
-    DELTAZ_TRY_ASSIGN(const Spacings spacing, chooseSpacings());
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double west = kInfinity, east = -kInfinity, south = kInfinity, north = -kInfinity;
-    for (const SourceRaster& raster : rasters_) {
-      const GridHeader& of_raster = raster.grid.header;
-      const GridLattice lattice(of_raster, raster.system);
-      std::vector<double> x, y;
-      const auto columns = of_raster.x_axis.count - 1, rows = of_raster.y_axis.count - 1;
-      for (int k = 0; k <= kOutlinePoints; ++k) {
-        const std::int64_t column = columns * k / kOutlinePoints, row = rows * k / kOutlinePoints;
-        for (const std::int64_t side : {std::int64_t{0}, rows}) {
-          x.push_back(lattice.xAt(column));
-          y.push_back(lattice.yAt(side));
-        }
-        for (const std::int64_t side : {std::int64_t{0}, columns}) {
-          x.push_back(lattice.xAt(side));
-          y.push_back(lattice.yAt(row));
-        }
-      }
-      DELTAZ_TRY_ASSIGN(
-          const CoordinateChange change,
-          CoordinateChange::between(raster.system, target_.system, target_.allow_ballpark, raster.path));
-      if (!change.apply(x, y)) {
-        return refusedSource(raster.path, fmt::format("the source reaches outside '{}'", target_.system.name),
-                             {}, "Choose another --grid");
-      }
-      for (std::size_t k = 0; k < x.size(); ++k) {
-        if (!target_.system.projected && west < kInfinity) x[k] -= 360 * std::round((x[k] - west) / 360);
-        west = std::min(west, x[k]);
-        east = std::max(east, x[k]);
-        south = std::min(south, y[k]);
-        north = std::max(north, y[k]);
-      }
+    DELTAZ_TRY_ASSIGN(Spacings spacing, chooseSpacings());
+    DELTAZ_TRY_ASSIGN(const CoordinateExtent extent,
+                      extentOf(rasters_, target_.system, target_.allow_ballpark));
+    if (!target_.system.projected && !target_.spacing && rasters_.front().system.projected) {
+      // Where meridians are near one another, columns need not be as many as rows; DTED does the same.
+      const double nearest = std::max({0.0, extent.south, -extent.north});
+      const double shrunk = std::cos(nearest * kDegree);
+      if (shrunk <= 0.5) spacing.x = roundArcSeconds(spacing.y / shrunk);
     }
     const AxisOrigin of_x = target_.system.projected ? kProjectedOrigin : kLongitudeOrigin;
     const AxisOrigin of_y = target_.system.projected ? kProjectedOrigin : kLatitudeOrigin;
-    DELTAZ_TRY_ASSIGN(header().x_axis, axisBetween(west, east, spacing.x, of_x));
-    DELTAZ_TRY_ASSIGN(header().y_axis, axisBetween(south, north, spacing.y, of_y));
+    DELTAZ_TRY_ASSIGN(header().x_axis, axisBetween(extent.west, extent.east, spacing.x, of_x));
+    DELTAZ_TRY_ASSIGN(header().y_axis, axisBetween(extent.south, extent.north, spacing.y, of_y));
     if (!target_.system.projected) {
       const double turn = 360 / spacing.x;
       while (postCoordinate(header().x_axis, of_x, header().x_axis.first) >= 180)
@@ -170,9 +154,26 @@ class Resampler {
       while (postCoordinate(header().x_axis, of_x, header().x_axis.first) < -180)
         header().x_axis.first += std::llround(turn);
     }
-    if (header().x_axis.count > kMostPosts / header().y_axis.count)
-      return usageError("--spacing", "the grid would have too many posts", {}, "Choose a larger one");
     return Success{};
+  }
+
+  // Says so before hours and gigabytes are spent on a slip of the spacing.
+  Status checkSize() {
+    const double posts =
+        static_cast<double>(header().x_axis.count) * static_cast<double>(header().y_axis.count);
+    double of_sources = 0;
+    for (const SourceRaster& raster : rasters_) of_sources += static_cast<double>(raster.grid.heights.size());
+    const double bytes = posts * kBytesPerPost;
+    const double memory =
+        static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+    const bool slip = posts > kLargePosts && posts > kMostPostsPerPost * of_sources;
+    if (posts <= static_cast<double>(kMostPosts) && bytes <= kMemoryShare * memory && !slip) return Success{};
+    return usageError("--spacing",
+                      fmt::format("the grid would have {} x {} posts, {:.3g} for each of its sources'",
+                                  header().x_axis.count, header().y_axis.count, posts / of_sources),
+                      fmt::format("building it takes about {:.1f} GB of memory; this machine has {:.1f} GB",
+                                  bytes / 1e9, memory / 1e9),
+                      "Choose a larger one, or a part with --bounds");
   }
 
   // Posts at whole multiples of the spacing inside [low, high].

@@ -245,6 +245,23 @@ def exported_system(folder, file):
 
 
 @case
+def a_resampled_globe_and_a_resampled_pole_are_whole(folder):
+    sources = [globe(folder, "shared", -180, 361, "post"), globe(folder, "cells", -180, 360, "area"), globe(folder, "from_0", 0, 360, "post")]
+    cap = folder / "cap.tif"
+    gdal("gdal_create", "-q", "-of", "GTiff", "-ot", "Int16", "-outsize", 300, 300, "-a_srs", "EPSG:3031", "-a_ullr", -150000, 150000, 150000, -150000,
+         "-burn", 700, cap)
+    for source, columns in [(source, 361) for source in sources] + [(cap, 1441)]:
+        area = folder / "whole.dz"
+        run("dbbuild", "terrain", source, "-o", area, "--grid", "geodetic", "--overwrite")
+        grid = info(area)["grids"][0]
+        require(grid["longitude"]["count"] == columns and grid["longitude"]["first"] == 0, grid["longitude"])
+        run("dbcheck", area, "--level", "all", "--against", source)
+    require(grid["latitude"]["first"] == 0, "the pole is not in it")
+    ended = run("dbbuild", "terrain", cap, "-o", folder / "x.dz", "--grid", "geodetic", "--spacing", "0.1as", expect=2, words=["--spacing", "--bounds", "GB"])
+    require("error" in ended.err, ended)
+
+
+@case
 def a_usgs_dem_cut_short_is_refused(folder):
     if not TEST_DATA:
         print("DELTAZ_TEST_DATA is not set: nothing to do")

@@ -284,6 +284,91 @@ TEST(Resampling, to_a_projection_and_back_the_surface_stays) {
               2 * (point.longitude - 3) * 3600 + 3 * (point.latitude - 45) * 3600, 0.006);
 }
 
+TEST(Resampling, a_globe_stays_whole_wherever_it_begins) {
+  const TemporaryDirectory folder;
+  for (const auto& [west, columns] : {std::pair{-180.0, 361}, {-180.0, 360}, {0.0, 360}, {-179.5, 360}}) {
+    const RawGrid grid = readOne(makeRaster(folder, globe(west, columns)), {.grid = "geodetic"});
+    EXPECT_EQ(grid.header.x_axis.count, 361) << west << ", " << columns;
+    EXPECT_EQ(grid.header.x_axis.first, 0);
+    EXPECT_TRUE(grid.valid.empty()) << west << ", " << columns;
+    EXPECT_EQ(grid.height(0, 10), grid.height(360, 10));
+  }
+}
+
+// A cone of 1 m for each kilometre from the pole, in the plane of a polar projection.
+TestRaster cap(int posts, const char* crs) {
+  TestRaster raster;
+  raster.columns = raster.rows = posts;
+  const double west = -0.5 * posts * 1000 + 300;
+  raster.transform = {west, 1000, 0, -west - 600, 0, -1000};
+  raster.crs = crs;
+  for (int row = 0; row < posts; ++row) {
+    for (int column = 0; column < posts; ++column)
+      raster.values.push_back(
+          std::round(0.01 * std::hypot(west + 1000 * (column + 0.5), west + 600 + 1000 * (row + 0.5))));
+  }
+  return raster;
+}
+
+TEST(Resampling, a_pole_inside_a_source_is_in_the_grid) {
+  const TemporaryDirectory folder;
+  for (const auto& [crs, south] : {std::pair{"EPSG:3031", true}, {"EPSG:3413", false}}) {
+    const std::string path = makeRaster(folder, cap(100, crs));
+    const RawGrid grid = readOne(path, {.grid = "geodetic", .spacing = PostSpacing{600, true}});
+    EXPECT_EQ(grid.header.x_axis.count, 2161) << crs;
+    EXPECT_EQ(grid.header.y_axis.count, 4) << "half a degree from the pole, and its corners";
+    const std::int64_t pole = south ? 0 : 3;
+    EXPECT_EQ(grid.header.y_axis.first + pole, south ? 0 : 1080);
+    for (std::int64_t column = 0; column < 2161; column += 90) {
+      ASSERT_TRUE(grid.isValid(column, pole));
+      EXPECT_NEAR(grid.height(column, pole), 100 * 5, 500) << "on the cone's tip";
+    }
+  }
+}
+
+TEST(Resampling, bounds_round_the_earth_keep_a_pole) {
+  const TemporaryDirectory folder;
+  const RawGrid grid = readOne(
+      makeRaster(folder, cap(300, "EPSG:3031")),
+      {.bounds = SourceBounds{-180, -90, 180, -89}, .grid = "geodetic", .spacing = PostSpacing{600, true}});
+  EXPECT_EQ(grid.header.x_axis.count, 2161);
+  EXPECT_EQ(grid.header.y_axis.count, 7);
+  EXPECT_TRUE(grid.valid.empty());
+}
+
+TEST(Resampling, near_a_pole_columns_are_spaced_by_metres_too) {
+  const TemporaryDirectory folder;
+  const RawGrid grid = readOne(makeRaster(folder, cap(300, "EPSG:3031")), {.grid = "geodetic"});
+  EXPECT_EQ(grid.header.y_axis.exact_spacing, (Rational{30, 1}));
+  EXPECT_EQ(grid.header.x_axis.exact_spacing, (Rational{900, 1}));
+  EXPECT_EQ(grid.header.x_axis.count, 1441);
+  EXPECT_LT(grid.heights.size(), 10u * 300 * 300);
+}
+
+TEST(Resampling, a_slip_of_the_spacing_is_refused_before_memory_is_taken) {
+  const TemporaryDirectory folder;
+  const std::string path = makeRaster(folder, plane(400, 400));
+  const Result<RawGrid> fine = readElevationSource(path, {.spacing = PostSpacing{0.01, true}});
+  ASSERT_FALSE(fine.ok());
+  EXPECT_EQ(fine.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(fine.error().message().find("--bounds"), std::string::npos) << fine.error().message();
+  // A part of it is as good as any.
+  EXPECT_TRUE(readElevationSource(path, {.bounds = SourceBounds{0.01, 0.01, 0.0101, 0.0101},
+                                         .spacing = PostSpacing{0.01, true}})
+                  .ok());
+}
+
+TEST(Resampling, a_projection_that_folds_the_source_is_refused) {
+  const TemporaryDirectory folder;
+  const std::string path = makeRaster(folder, globe(-180, 361));
+  const Result<RawGrid> folded = readElevationSource(path, {.grid = "EPSG:32610"});
+  ASSERT_FALSE(folded.ok()) << "zone 10 has no place for the other side of the Earth";
+  EXPECT_EQ(folded.error().kind, ErrorKind::kInvalid);
+  EXPECT_TRUE(
+      readElevationSource(path, {.bounds = SourceBounds{-130, -5, -115, 5}, .grid = "EPSG:32610"}).ok());
+  EXPECT_TRUE(readElevationSource(path, {.grid = "EPSG:3395"}).ok());
+}
+
 TEST(Resampling, spacings_of_the_wrong_kind_are_refused) {
   const TemporaryDirectory folder;
   const std::string path = makeRaster(folder, plane(20, 20));
