@@ -8,7 +8,7 @@
 //   geometry   what the database says of its own accuracy, recomputed in other ways than the builder's:
 //              geometric, RMS and coverage errors, normal cones and normals, control points, LOD ranges.
 //              Needs the full-resolution posts in memory, five bytes a post of a grid
-// `against` adds a comparison with the source, post for post.
+// `against` adds a comparison with the sources, post for post.
 //
 // A damaged database never makes a check crash or stop early without saying so (Report::complete).
 // Thread-safety: one check at a time per Report.
@@ -61,8 +61,9 @@ struct IssueGroup {
 
 struct CheckOptions {
   CheckLevel level = CheckLevel::kDecode;
-  // Grids of the sources, already read, one after the other in memory: each is compared with the grid of the
-  // database that has its posts.
+  // The sources, already read, one after the other in memory, one grid each (SourceOptions::join) unless the
+  // database is resampled. Each grid of the database is compared with all sources area.json names for it, in
+  // that order; those that are not given leave the report incomplete.
   const RawGrid* against = nullptr;
   std::size_t against_count = 1;
   std::string against_name;  // for messages
@@ -76,6 +77,7 @@ struct Report {
   std::vector<IssueGroup> groups;    // in the order of the codes
   bool complete = true;              // every check of the level ran to its end
   std::vector<std::string> skipped;  // what did not run, and why
+  std::vector<std::string> notes;    // what there was nothing to check of
   std::uint64_t nodes_checked = 0, blocks_checked = 0, bytes_checked = 0, posts_compared = 0;
   std::uint64_t leaves_measured = 0;  // whose errors were recomputed
   // Set when the database could not be opened or read, is newer than this version, or the check itself

@@ -26,6 +26,19 @@ struct PlacedSource {
   const RawGrid* posts = nullptr;
   PostRectangle at;
   std::size_t rank = 0;  // among the grid's sources
+  bool isValid(std::int64_t column, std::int64_t row) const {
+    return posts->isValid(column - at.columns.begin, row - at.rows.begin);
+  }
+  std::int32_t height(std::int64_t column, std::int64_t row) const {
+    return posts->height(column - at.columns.begin, row - at.rows.begin);
+  }
+};
+
+// What the sources say of a post: void without a source.
+struct Promise {
+  bool covered = false;
+  const PlacedSource* source = nullptr;
+  std::int64_t column = 0;
 };
 
 class GridRule {
@@ -40,6 +53,7 @@ class GridRule {
         loader_(context),
         cut_(!optionOf(context.area, "bounds").empty()),
         filled_(optionOf(context.area, "void") == "fill") {
+    if (places_.turn() > 0) offsets_ = {0, -places_.turn(), places_.turn()};
     std::vector<std::size_t> absent(listed.begin(), listed.end());
     for (const MatchedSource& source : matched) {
       const bool there = sameGeoreference(*source.source);
@@ -69,6 +83,7 @@ class GridRule {
     for (const PlacedSource& source : given_) reach_ = hull(reach_, source.at);
     for (const PlacedSource& source : absent_) reach_ = hull(reach_, source.at);
     checkExtent();
+    if (goesRound()) reach_.columns = ours.columns;
     std::vector<std::uint32_t> leaves;
     for (std::uint32_t number = 1; number <= context_.records.size(); ++number) {
       const NodeRecord& record = context_.record(number);
@@ -156,7 +171,17 @@ class GridRule {
   }
   static constexpr double kSamePlace = 1e-2;  // metres
 
+  bool goesRound() const { return places_.turn() > 0 && reach_.columns.size() >= places_.turn(); }
+
   void checkExtent() {
+    PostRange columns = reach_.columns;
+    const std::int64_t turn = places_.turn(), first = geometry_.header().x_axis.first;
+    if (goesRound()) {
+      // The first column of a full turn may be there again as its last, and a cut may run on past that.
+      columns.end = columns.begin + std::max(columns.size(), turn + 1);
+      const std::int64_t turns = floorDivide(first - columns.begin, turn);
+      columns = {columns.begin + turns * turn, columns.end + (cut_ ? turns + 1 : turns) * turn};
+    }
     const auto check = [&](const GridAxis& ours, PostRange theirs, const char* what) {
       if (ours.first == theirs.begin && ours.count == theirs.size()) return;
       // An area that was cut on purpose may be smaller than its sources.
@@ -165,7 +190,7 @@ class GridRule {
                fmt::format("the database has {} {} from {} on, the source {} from {} on", ours.count, what,
                            ours.first, theirs.size(), theirs.begin));
     };
-    check(geometry_.header().x_axis, reach_.columns, "columns");
+    check(geometry_.header().x_axis, columns, "columns");
     check(geometry_.header().y_axis, reach_.rows, "rows");
   }
 
@@ -182,12 +207,14 @@ class GridRule {
     const PostRange columns = geometry_.nodeColumnsAt(0), rows = geometry_.nodeRowsAt(0);
     const PostRectangle here = intersection({tile.columns, tile.rows}, reach_);
     Nearby nearby;
-    for (const PlacedSource& source : given_) {
-      if (postsOf(intersection(source.at, here)) > 0) nearby.given.push_back(source);
-    }
-    for (const PlacedSource& source : absent_) {
-      if (postsOf(intersection(source.at, here)) > 0) nearby.absent.push_back(source);
-    }
+    const auto isNear = [&](const PlacedSource& source) {
+      return std::any_of(offsets_.begin(), offsets_.end(), [&](std::int64_t offset) {
+        const PostRectangle there = {{here.columns.begin + offset, here.columns.end + offset}, here.rows};
+        return postsOf(intersection(source.at, there)) > 0;
+      });
+    };
+    std::copy_if(given_.begin(), given_.end(), std::back_inserter(nearby.given), isNear);
+    std::copy_if(absent_.begin(), absent_.end(), std::back_inserter(nearby.absent), isNear);
     // A post on a shared border belongs to one leaf only, so that it is compared and counted once.
     for (std::int64_t row = here.rows.begin; row < here.rows.end; ++row) {
       if (ownerOf(row, leaf, rows) != record.y) continue;
@@ -210,25 +237,67 @@ class GridRule {
     if (error.code != IssueCode::kRefData) addError(report, error, where);
   }
 
+  // The first of the sources that has a height there.
+  static Promise promiseAt(const Nearby& nearby, std::int64_t column, std::int64_t row) {
+    Promise promise;
+    promise.column = column;
+    for (const PlacedSource& source : nearby.given) {
+      if (!source.at.holds(column, row)) continue;
+      promise.covered = true;
+      if (!source.isValid(column, row)) continue;
+      promise.source = &source;
+      break;
+    }
+    return promise;
+  }
+
   void comparePost(std::uint32_t number, const LoadedTile& tile, std::int64_t column, std::int64_t row,
                    const Nearby& nearby, Report& report) {
-    const auto holds = [&](const PlacedSource& source) { return source.at.holds(column, row); };
+    const bool hidden = std::any_of(nearby.absent.begin(), nearby.absent.end(), [&](const auto& source) {
+      return std::any_of(offsets_.begin(), offsets_.end(),
+                         [&](std::int64_t offset) { return source.at.holds(column + offset, row); });
+    });
     // Its height may be that of a source nobody has shown.
-    if (std::any_of(nearby.absent.begin(), nearby.absent.end(), holds)) {
+    if (hidden) {
       ++hidden_;
       return;
     }
     ++report.posts_compared;
+    // A meridian where sources begin and end that go round the Earth may hold what either says.
+    Promise first;
+    for (const std::int64_t offset : offsets_) {
+      const Promise promise = promiseAt(nearby, column + offset, row);
+      if (!promise.covered) continue;
+      if (isKept(promise, tile, column, row)) return;
+      if (!first.covered) first = promise;
+    }
+    // What no source covers is void.
+    if (first.covered || !isKept(first, tile, column, row))
+      reportDifference(number, first, tile, column, row, report);
+  }
+
+  bool isKept(const Promise& promise, const LoadedTile& tile, std::int64_t column, std::int64_t row) const {
     const bool valid = tile.isValid(column, row);
-    // The first of the sources that has a height there; what none covers is void.
-    const auto found =
-        std::find_if(nearby.given.begin(), nearby.given.end(), [&](const PlacedSource& source) {
-          return holds(source) &&
-                 source.posts->isValid(column - source.at.columns.begin, row - source.at.rows.begin);
-        });
-    const bool source_valid = found != nearby.given.end();
-    if (!valid && !source_valid) return;
-    if (filled_ && !source_valid) return;
+    if (promise.source == nullptr) return !valid || filled_;
+    if (!valid) return false;
+    const GridHeader& ours = geometry_.header();
+    const GridHeader& theirs = promise.source->posts->header;
+    if (ours.quantum == theirs.quantum)
+      return tile.height(column, row) == promise.source->height(promise.column, row);
+    return difference(promise, tile, column, row) <= ours.height_error + theirs.height_error + kSameHeight;
+  }
+
+  double metresOf(const Promise& promise, std::int64_t row) const {
+    return static_cast<double>(promise.source->height(promise.column, row)) *
+           promise.source->posts->header.quantum.value();
+  }
+  double difference(const Promise& promise, const LoadedTile& tile, std::int64_t column,
+                    std::int64_t row) const {
+    return std::abs(geometry_.metres(tile.height(column, row)) - metresOf(promise, row));
+  }
+
+  void reportDifference(std::uint32_t number, const Promise& promise, const LoadedTile& tile,
+                        std::int64_t column, std::int64_t row, Report& report) const {
     const auto where = [&] {
       IssueLocation location = context_.locate(number);
       location.file = context_.segments.at(context_.record(number).segment)->reference.name;
@@ -240,7 +309,8 @@ class GridRule {
       }
       return location;
     };
-    if (valid != source_valid) {
+    const bool valid = tile.isValid(column, row);
+    if (!valid || promise.source == nullptr) {
       addLazily(report, IssueCode::kSrcVoid, 0.0, [&] {
         return makeIssue(
             IssueCode::kSrcVoid,
@@ -249,22 +319,13 @@ class GridRule {
       });
       return;
     }
-    const GridHeader& ours_header = geometry_.header();
-    const GridHeader& theirs_header = found->posts->header;
-    const std::int32_t height = tile.height(column, row);
-    const std::int32_t source_height =
-        found->posts->height(column - found->at.columns.begin, row - found->at.rows.begin);
-    const bool same_quantum = ours_header.quantum == theirs_header.quantum;
-    if (same_quantum && height == source_height) return;
-    const double ours = geometry_.metres(height);
-    const double theirs = static_cast<double>(source_height) * theirs_header.quantum.value();
-    const double metres = std::abs(ours - theirs);
-    if (!same_quantum && metres <= ours_header.height_error + theirs_header.height_error + kSameHeight)
-      return;
+    const double metres = difference(promise, tile, column, row);
     addLazily(report, IssueCode::kSrcHeight, metres, [&] {
-      return makeIssue(IssueCode::kSrcHeight,
-                       fmt::format("height {} m, in the source {} m ({} m apart)", ours, theirs, metres),
-                       where(), metres);
+      return makeIssue(
+          IssueCode::kSrcHeight,
+          fmt::format("height {} m, in the source {} m ({} m apart)",
+                      geometry_.metres(tile.height(column, row)), metresOf(promise, row), metres),
+          where(), metres);
     });
   }
 
@@ -274,6 +335,7 @@ class GridRule {
   const SourcePlaces places_;
   TileLoader loader_;
   const bool cut_, filled_;
+  std::vector<std::int64_t> offsets_ = {0};  // columns on, and the same meridian
   std::vector<PlacedSource> given_, absent_;
   std::string absent_names_;
   bool elsewhere_ = false;

@@ -78,5 +78,7 @@ void checkChecksums(CheckContext& context);
 void checkTerrain(CheckContext& context);
 void checkGeometry(CheckContext& context);
 void checkAgainstSource(CheckContext& context);
+// The part of it for a grid that was resampled.
+void checkResampled(CheckContext& context, std::uint16_t grid);
 
 }  // namespace deltaz

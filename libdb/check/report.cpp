@@ -87,6 +87,7 @@ void mergeReport(Report& into, Report part) {
   }
   into.complete = into.complete && part.complete;
   std::move(part.skipped.begin(), part.skipped.end(), std::back_inserter(into.skipped));
+  std::move(part.notes.begin(), part.notes.end(), std::back_inserter(into.notes));
   into.nodes_checked += part.nodes_checked;
   into.blocks_checked += part.blocks_checked;
   into.bytes_checked += part.bytes_checked;

@@ -1,6 +1,7 @@
 #include "tools/dbcheck/against_sources.h"
 
 #include "libdb/access/database.h"
+#include "libdb/source/area_datum.h"
 #include "tools/common/parse.h"
 
 namespace deltaz {
@@ -27,11 +28,11 @@ SourceOptions recordedOptions(const AreaHeader& area) {
   // A step that was chosen for a resampled grid is none of its sources'.
   for (const GridHeader& grid : area.grids) {
     if (grid.resampling) options.quantum.reset();
+    // What a grid was resampled from is one surface; elsewhere every source is held against its grid.
+    options.join = grid.resampling.has_value();
+    options.order.insert(options.order.end(), grid.sources.begin(), grid.sources.end());
   }
-  // A grid of sources in the area's own datum leads to that datum.
-  for (const GridHeader& grid : area.grids) {
-    if (grid.kind == "geodetic") options.datum = grid.crs_wkt;
-  }
+  if (const std::optional<ReferenceSystem> datum = datumOf(area)) options.datum = datum->wkt;
   options.allow_ballpark = true;  // places are compared, and a guess would show
   return options;
 }

@@ -72,6 +72,7 @@ Json jsonReport(const Report& report, const CheckRequest& request, const Judgeme
   json["exit_code"] = judgement.exit_code;
   json["complete"] = report.complete;
   json["skipped"] = report.skipped;
+  json["notes"] = report.notes;
   json["counts"] = {{"error", report.count(Severity::kError)},
                     {"warning", report.count(Severity::kWarning)},
                     {"information", report.count(Severity::kInformation)}};

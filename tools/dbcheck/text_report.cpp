@@ -85,10 +85,11 @@ std::string textReport(const Report& report, const CheckRequest& request, const 
                         sample);
   }
   if (!request.against.empty()) {
-    text +=
-        fmt::format("  against {}: {} compared\n", fmt::join(request.against, ", "), plural(report.posts_compared, "post"));
+    text += fmt::format("  against {}: {} compared\n", fmt::join(request.against, ", "),
+                        plural(report.posts_compared, "post"));
   }
   for (const std::string& reason : report.skipped) text += "  not checked: " + reason + "\n";
+  for (const std::string& note : report.notes) text += "  note: " + note + "\n";
   for (const IssueGroup& group : report.groups) text += groupText(group, shown_locations);
   return text;
 }
