@@ -54,7 +54,15 @@ Result<ReferenceSystem> describe(const OGRSpatialReference& stated, const std::s
   if (!system.projected && !horizontal.IsGeographic()) {
     return refusedSource(
         where, fmt::format("the reference system '{}' is neither geographic nor projected", system.name),
-        "its coordinates cannot be placed on the Earth", "Give the right one with --crs");
+        "its coordinates cannot be placed on the Earth",
+        where.starts_with("--") ? "Name a geographic or a projected one" : "Give the right one with --crs");
+  }
+  if (horizontal.IsDerivedGeographic() != 0) {
+    return refusedSource(
+        where, fmt::format("the coordinates of '{}' are no latitudes and longitudes", system.name),
+        "they are derived from such, as those of a rotated pole are",
+        where.starts_with("--") ? "Name a geographic or a projected one"
+                                : "Warp the source to latitudes and longitudes, with gdalwarp -t_srs");
   }
   if (std::abs(horizontal.GetPrimeMeridian()) > 0) {
     return refusedSource(where, fmt::format("the prime meridian of '{}' is not Greenwich", system.name), {},

@@ -9,10 +9,10 @@
 #include <ogr_spatialref.h>
 
 #include "libdb/source/gdal_session.h"
-#include "libdb/source/grid_placement.h"
 #include "libdb/source/height_units.h"
 #include "libdb/source/source_error.h"
 #include "libdb/source/source_opening.h"
+#include "libdb/source/source_placement.h"
 #include "libdb/source/source_posts.h"
 #include "libdb/source/usgs_dem_check.h"
 
@@ -20,7 +20,6 @@ namespace deltaz {
 
 namespace {
 
-constexpr double kDegreesTolerance = 1e-9;
 constexpr int kRowsPerRead = 256;
 
 // ---- which band
@@ -73,68 +72,6 @@ Status checkBand(GDALRasterBand& band, const std::string& path) {
       signedness != nullptr && EQUAL(signedness, "SIGNEDBYTE")) {
     return refusedSource(path, "elevations of signed bytes are not read", {}, "Convert them to Int16 first");
   }
-  return Success{};
-}
-
-// ---- where the posts are
-
-// The largest index of a post the format holds, and more than any grid has.
-constexpr double kMostPosts = 2147483647.0;
-
-Status placeGeodetic(const SourceDescription& source, const std::string& path, GridHeader& header) {
-  const std::array<double, 6>& transform = source.geotransform;
-  const double spacing_y = std::abs(transform[5]);
-  double west = transform[0] + 0.5 * transform[1];
-  const double first_row = transform[3] + 0.5 * transform[5];
-  const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
-  const double south = std::min(first_row, last_row);
-  const double north = std::max(first_row, last_row);
-  if (south < -90 - kDegreesTolerance || north > 90 + kDegreesTolerance) {
-    return refusedSource(path, fmt::format("the source reaches from latitude {} to {}", south, north),
-                         "there is no such latitude");
-  }
-  const double width = static_cast<double>(source.columns - 1) * transform[1];
-  if (width > 360 + kDegreesTolerance || std::abs(west) > 720)
-    return refusedSource(path, "the source goes more than once round the Earth");
-  // The west edge in [-180, 180), also when rounding left it a hair below.
-  while (west < -180 - kDegreesTolerance) west += 360;
-  while (west >= 180 - kDegreesTolerance) west -= 360;
-  header.x_axis = placeAxis(west, transform[1], source.columns, kLongitudeOrigin);
-  header.y_axis = placeAxis(south, spacing_y, source.rows, kLatitudeOrigin);
-  return Success{};
-}
-
-Status placeGrid(const SourceDescription& source, const std::string& path, const ReferenceSystem& system,
-                 GridHeader& header) {
-  const std::array<double, 6>& transform = source.geotransform;
-  if (transform[2] != 0 || transform[4] != 0) {
-    return refusedSource(path, "the source is rotated against its coordinate axes", {},
-                         "Warp it north-up first, with gdalwarp");
-  }
-  for (const double value : transform) {
-    if (!std::isfinite(value)) return refusedSource(path, "the source's georeferencing is not finite");
-  }
-  if (!(transform[1] > 0) || transform[5] == 0)
-    return refusedSource(path, "the source's columns do not run from west to east");
-  if (source.columns < 2 || source.rows < 2)
-    return refusedSource(path, "the source has fewer than 2 x 2 posts");
-  const double least = system.projected ? kLeastSpacingProjected : kLeastSpacingDegrees;
-  const double spacing_y = std::abs(transform[5]);
-  if (transform[1] < least || spacing_y < least) {
-    return refusedSource(path, "the source's posts are less than 0.1 mm apart",
-                         "its georeferencing is hardly meant so");
-  }
-  header.kind = system.projected ? "projected" : "geodetic";
-  if (!system.projected) return placeGeodetic(source, path, header);
-  const double west = transform[0] + 0.5 * transform[1];
-  const double first_row = transform[3] + 0.5 * transform[5];
-  const double last_row = transform[3] + (static_cast<double>(source.rows) - 0.5) * transform[5];
-  if (std::abs(west) / transform[1] > kMostPosts || std::abs(first_row) / spacing_y > kMostPosts ||
-      std::abs(last_row) / spacing_y > kMostPosts) {
-    return refusedSource(path, "the source lies too far from its origin for so small a spacing of posts");
-  }
-  header.x_axis = placeAxis(west, transform[1], source.columns, kProjectedOrigin);
-  header.y_axis = placeAxis(std::min(first_row, last_row), spacing_y, source.rows, kProjectedOrigin);
   return Success{};
 }
 
@@ -306,7 +243,7 @@ Result<SourceRaster> readOpened(GDALDataset& dataset, const std::string& path, c
   DELTAZ_TRY_ASSIGN(raster.system, systemOf(dataset, path, options, warnings));
   DELTAZ_TRY_ASSIGN(source.content, hashOfContent(path, membersOf(dataset)));
   fillHeader(raster.system, dataset, raster.grid.header);
-  DELTAZ_TRY(placeGrid(source, path, raster.system, raster.grid.header));
+  DELTAZ_TRY(placeSource(source, path, raster.system, raster.grid.header, warnings));
 
   PostMeaning meaning;
   meaning.path = path;

@@ -68,6 +68,18 @@ def a_rotated_source_is_refused(folder):
 
 
 @case
+def coordinates_of_a_rotated_pole_are_refused(folder):
+    turned = folder / "turned.tif"
+    gdal("gdal_translate", "-q", "-a_srs", "+proj=ob_tran +o_proj=longlat +o_lon_p=0 +o_lat_p=37.5 +lon_0=10 +datum=WGS84", small_dem(folder), turned)
+    refuse(folder, turned, 1, ["turned.tif", "rotated pole", "gdalwarp"])
+
+
+@case
+def a_target_system_without_plane_coordinates_is_refused_by_its_option(folder):
+    refuse(folder, small_dem(folder), 1, ["--grid", "geographic or a projected"], "--grid", "EPSG:4978")
+
+
+@case
 def a_source_of_several_bands_is_refused(folder):
     small = small_dem(folder)
     gdal("gdal_translate", "-q", "-b", "1", "-b", "1", small, folder / "bands.tif")

@@ -211,5 +211,45 @@ TEST(ElevationSource, the_slit_of_a_grid_that_goes_round_the_earth_is_closed) {
   EXPECT_EQ(readOne(makeRaster(folder, raster)).header.x_axis.count, 359) << "a column is missing there";
 }
 
+TEST(ElevationSource, the_coordinates_of_a_rotated_pole_are_not_taken_for_latitudes) {
+  TestRaster raster;
+  raster.crs = "+proj=ob_tran +o_proj=longlat +o_lon_p=0 +o_lat_p=37.5 +lon_0=10 +datum=WGS84 +type=crs";
+  const Error error = refusal(raster);
+  EXPECT_EQ(error.kind, ErrorKind::kInvalid);
+  EXPECT_NE(error.message().find("gdalwarp"), std::string::npos) << error.message();
+}
+
+TEST(ElevationSource, what_arithmetic_left_of_a_rotation_is_none) {
+  const TemporaryDirectory folder;
+  TestRaster raster;
+  raster.transform[2] = 1e-18;
+  raster.transform[4] = -1e-13;
+  const RawGrid grid = readOne(makeRaster(folder, raster));
+  EXPECT_EQ(grid.header.x_axis.spacing, 1.0 / 3600);
+  EXPECT_EQ(grid.header.sources[0].geotransform[2], 1e-18) << "and an export has it again";
+}
+
+// A sixth of a degree written with ten decimals, all round the Earth and from pole to pole.
+TEST(ElevationSource, rounded_georeferencing_that_reaches_beyond_the_pole_is_placed_exactly) {
+  const TemporaryDirectory folder;
+  TestRaster raster;
+  raster.columns = 2161;
+  raster.rows = 1081;
+  raster.transform = {-180.08333333335, 0.1666666667, 0, 90.08333333335, 0, -0.1666666667};
+  raster.values.assign(2161 * 1081, 5);
+  std::vector<std::string> warnings;
+  const RawGrid grid = readOne(makeRaster(folder, raster), {}, &warnings);
+  EXPECT_EQ(grid.header.y_axis.exact_spacing, (Rational{600, 1}));
+  EXPECT_EQ(grid.header.y_axis.first, 0);
+  EXPECT_EQ(grid.header.x_axis.exact_spacing, (Rational{600, 1}));
+  EXPECT_EQ(grid.header.x_axis.first, 0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("rounded"), std::string::npos);
+  raster.transform = {-180.083335, 0.16667, 0, 90.083335, 0, -0.16667};
+  const Result<RawGrid> far = readElevationSource(makeRaster(folder, raster, "far.tif"), {});
+  ASSERT_FALSE(far.ok()) << "that is two hundredths of a cell";
+  EXPECT_NE(far.error().message().find("-a_ullr"), std::string::npos) << far.error().message();
+}
+
 }  // namespace
 }  // namespace deltaz
