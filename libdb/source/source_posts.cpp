@@ -66,7 +66,9 @@ class Interpreter {
     if (voids_ == values_.size())
       return refusedSource(meaning_.path, "the source has no elevations", "every post is void");
     DELTAZ_TRY(chooseQuantum());
-    return convert();
+    DELTAZ_TRY(convert());
+    warnOfRange();
+    return Success{};
   }
 
  private:
@@ -142,7 +144,9 @@ class Interpreter {
       const double value = values_[first];
       if (std::find(judged.begin(), judged.end(), value) != judged.end()) continue;
       judged.push_back(value);
-      if (!isImplausible(value, suspects)) continue;
+      const Judgement judgement = judge(value, suspects);
+      if (judgement == Judgement::kUnknown) warnAlone(value, suspects);
+      if (judgement != Judgement::kSentinel) continue;
       std::size_t count = 0;
       for (const std::size_t k : suspects) {
         if (values_[k] != value) continue;
@@ -157,8 +161,18 @@ class Interpreter {
     }
   }
 
-  // Whether every post of this value stands far above or below all its neighbours.
-  bool isImplausible(double value, const std::vector<std::size_t>& suspects) const {
+  void warnAlone(double value, const std::vector<std::size_t>& suspects) {
+    const auto count =
+        std::count_if(suspects.begin(), suspects.end(), [&](std::size_t k) { return values_[k] == value; });
+    warnings_.push_back(fmt::format(
+        "{}: {} post{} of value {} {} kept as heights, though it is a customary sentinel and no other height "
+        "is beside them (if it means void, say so with --nodata)",
+        meaning_.path, count, count == 1 ? "" : "s", value, count == 1 ? "is" : "are"));
+  }
+
+  // A sentinel stands, at every post of its value, far above or below all neighbours.
+  enum class Judgement : std::uint8_t { kHeight, kSentinel, kUnknown };
+  Judgement judge(double value, const std::vector<std::size_t>& suspects) const {
     const double metres_per_step = std::abs(meaning_.source.scale) * meaning_.unit.value();
     const std::size_t rows = values_.size() / columns_;
     bool has_neighbour = false;
@@ -172,9 +186,10 @@ class Interpreter {
       };
       if ((column > 0 && isNear(k - 1)) || (column + 1 < columns_ && isNear(k + 1)) ||
           (row > 0 && isNear(k - columns_)) || (row + 1 < rows && isNear(k + columns_)))
-        return false;
+        return Judgement::kHeight;
     }
-    return has_neighbour || std::abs(value) * metres_per_step > kImplausibleHeight;
+    return has_neighbour || std::abs(value) * metres_per_step > kImplausibleHeight ? Judgement::kSentinel
+                                                                                   : Judgement::kUnknown;
   }
 
   // ---- quantum
@@ -259,6 +274,23 @@ class Interpreter {
     }
     grid_.heights = std::move(heights);
     return Success{};
+  }
+
+  // Nothing is changed: it may be another planet, or not.
+  void warnOfRange() {
+    const double quantum = grid_.header.quantum.value();
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t k = 0; k < grid_.heights.size(); ++k) {
+      if (!isValid(k)) continue;
+      const double height = static_cast<double>(grid_.heights[k]) * quantum;
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    if (low >= kLowestOnEarth && high <= kHighestOnEarth) return;
+    warnings_.push_back(
+        fmt::format("{}: its heights reach from {} to {} m, as none on Earth do; they are kept (if a value "
+                    "means void, say so with --nodata)",
+                    meaning_.path, low, high));
   }
 
   PostValues values_;

@@ -20,6 +20,8 @@ inline constexpr double kFinestExactQuantum = 1e-3;  // metres
 inline constexpr double kImplausibleJump = 500;  // metres
 // A customary sentinel without neighbours is taken for one if it is no height on Earth.
 inline constexpr double kImplausibleHeight = 12000;  // metres
+// Heights beyond these are kept with a warning.
+inline constexpr double kLowestOnEarth = -12000, kHighestOnEarth = 9000;  // metres
 
 // The stored values of a raster, row by row from the south-west. Whole numbers of 32 bits are kept as such:
 // large DEMs are of that kind.

@@ -246,6 +246,16 @@ def exported_system(folder, file):
 
 
 @case
+def quiet_is_without_warnings_which_stay_in_json(folder):
+    first, second = small_dem(folder, void=False), folder / "other.tif"
+    gdal("gdal_translate", "-q", "-scale", "0", "1000", "7", "1007", first, second)
+    loud = run("dbbuild", "terrain", first, second, "-o", folder / "loud.dz")
+    require("warning" in loud.err, loud)
+    quiet = run("dbbuild", "terrain", first, second, "-o", folder / "quiet.dz", "-q", "--json")
+    require(quiet.err == "" and len(quiet.json()["warnings"]) == 1, quiet)
+
+
+@case
 def a_resampled_globe_and_a_resampled_pole_are_whole(folder):
     sources = [globe(folder, "shared", -180, 361, "post"), globe(folder, "cells", -180, 360, "area"), globe(folder, "from_0", 0, 360, "post")]
     cap = folder / "cap.tif"

@@ -33,7 +33,7 @@ Result<int> CommonOptions::threads() const {
 
 void addCommonOptions(CLI::App& app, CommonOptions& options, bool writes) {
   app.set_help_flag("-h,--help", "Print this help and exit");
-  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print errors only (warnings stay in --json)");
   app.add_flag("-v,--verbose", options.verbose, "Print more")->excludes(quiet);
   app.add_option("-j,--jobs", options.threads_text, "Number of threads (default: as many as the machine has)")
       ->type_name("N");

@@ -5,6 +5,7 @@
 
 #include "libdb/access/content_digest.h"
 #include "libdb/access/database.h"
+#include "libdb/source/reference_system.h"
 #include "tools/common/json_output.h"
 #include "tools/dbbuild/command.h"
 
@@ -113,10 +114,16 @@ Json areaJson(const std::string& path, const AreaHeader& area) {
   return json;
 }
 
-std::string axisText(const GridAxis& axis, bool geodetic) {
-  if (!geodetic) return fmt::format("{} units", axis.spacing);
-  return axis.exact_spacing ? rationalText(*axis.exact_spacing) + " arc-seconds"
-                            : fmt::format("{} degrees", axis.spacing);
+// Latitudes and longitudes of another datum than the area's are placed as those of a projection are.
+bool isOfOtherDatum(const GridHeader& grid) {
+  if (grid.kind == "geodetic") return false;
+  const Result<ReferenceSystem> system = parseReferenceSystem(grid.crs_wkt, "area.json");
+  return system.ok() && !system.value().projected;
+}
+
+std::string axisText(const GridAxis& axis, bool geodetic, bool degrees) {
+  if (geodetic && axis.exact_spacing) return rationalText(*axis.exact_spacing) + " arc-seconds";
+  return fmt::format("{} {}", axis.spacing, degrees ? "degrees" : "units");
 }
 
 // The lines only some grids need.
@@ -149,9 +156,11 @@ std::string areaText(const std::string& path, const AreaHeader& area, bool verbo
   text += fmt::format("  nodes           {}\n", area.node_count);
   for (std::size_t i = 0; i < area.grids.size(); ++i) {
     const GridHeader& grid = area.grids[i];
-    text += fmt::format("  grid {}          {}, {} x {} posts, {} x {}\n", i, grid.kind, grid.x_axis.count,
-                        grid.y_axis.count, axisText(grid.x_axis, grid.kind == "geodetic"),
-                        axisText(grid.y_axis, grid.kind == "geodetic"));
+    const bool geodetic = grid.kind == "geodetic", other_datum = isOfOtherDatum(grid);
+    text += fmt::format("  grid {}          {}, {} x {} posts, {} x {}\n", i,
+                        other_datum ? "geographic, of another datum" : grid.kind, grid.x_axis.count,
+                        grid.y_axis.count, axisText(grid.x_axis, geodetic, geodetic || other_datum),
+                        axisText(grid.y_axis, geodetic, geodetic || other_datum));
     text += fmt::format("    datum         {}; heights: {}\n", grid.horizontal_datum, grid.vertical_datum);
     text += fmt::format("    quantum       {} m, leaves of {} cells, {} levels\n", rationalText(grid.quantum),
                         grid.leaf_cells, grid.level_count);

@@ -52,7 +52,9 @@ class TerrainCommand final : public Command {
       progress.report(phase, 0.1 + 0.9 * fraction);
     };
     DELTAZ_TRY_ASSIGN(const SourceArea area, readElevationSources(sources_, source_options));
-    for (const std::string& warning : area.warnings) std::cerr << "dbbuild: warning: " + warning + "\n";
+    for (const std::string& warning : area.warnings) {
+      if (!common_.quiet) std::cerr << "dbbuild: warning: " + warning + "\n";
+    }
     options.provenance = texts_.provenance();
     if (area.filled_posts > 0)
       options.provenance.emplace_back("void_filled_posts", std::to_string(area.filled_posts));

@@ -225,5 +225,30 @@ TEST(SourceValues, one_band_of_several_is_read_when_named) {
   EXPECT_EQ(readElevationSource(path, {.band = 4}).error().kind, ErrorKind::kUsage);
 }
 
+TEST(SourceValues, a_source_of_nothing_but_a_customary_sentinel_is_warned_of) {
+  const TemporaryDirectory folder;
+  TestRaster raster;
+  raster.type = GDT_Float32;
+  raster.values.assign(20, -9999);
+  std::vector<std::string> warnings;
+  const RawGrid grid = readOne(makeRaster(folder, raster), {}, &warnings);
+  EXPECT_TRUE(grid.valid.empty());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--nodata"), std::string::npos) << warnings[0];
+}
+
+TEST(SourceValues, heights_that_are_none_on_earth_are_kept_with_a_warning) {
+  const TemporaryDirectory folder;
+  TestRaster raster;
+  raster.values.assign(20, 100);
+  std::vector<std::string> warnings;
+  for (const double height : {-12000.0, 9000.0, -12001.0, 9001.0}) {
+    raster.values[7] = height;
+    const RawGrid grid = readOne(makeRaster(folder, raster), {}, &warnings);
+    EXPECT_EQ(grid.height(2, 2), height);
+    EXPECT_EQ(warnings.size(), std::abs(height) == 12000 || height == 9000 ? 0u : 1u) << height;
+  }
+}
+
 }  // namespace
 }  // namespace deltaz
