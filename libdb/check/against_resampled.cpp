@@ -21,8 +21,7 @@ void checkResampled(CheckContext& context, std::uint16_t grid) {
   if (!absent.empty()) {
     addSkipped(
         context.report,
-        fmt::format("{} posts of grid {} against their sources: {}, which they were resampled from too, "
-                    "is not given",
+        fmt::format("{} posts of grid {}, which was resampled from {} too, and that is not given",
                     postsOf(rectangleOf(context.grids[grid].header())), grid, fmt::join(absent, ", ")));
     return;
   }

@@ -110,12 +110,10 @@ class GridRule {
   };
 
   void skip(std::int64_t posts) {
-    std::string why = absent_names_.empty()
-                          ? "no source of theirs is given"
-                          : fmt::format("{}, where they come from, is not given", absent_names_);
-    if (elsewhere_) why = "the posts of the source are elsewhere";
-    addSkipped(context_.report,
-               fmt::format("{} posts of grid {} against their source: {}", posts, grid_, why));
+    std::string why = "no source is given that could be theirs";
+    if (!absent_names_.empty()) why = fmt::format("{} is not given", absent_names_);
+    if (elsewhere_) why = "the source given for them has its posts elsewhere";
+    addSkipped(context_.report, fmt::format("{} posts of grid {}, since {}", posts, grid_, why));
   }
 
   void complain(IssueCode code, std::string message) {

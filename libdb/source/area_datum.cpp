@@ -10,8 +10,10 @@ std::optional<ReferenceSystem> datumOf(const AreaHeader& area) {
     const Result<ReferenceSystem> system = parseReferenceSystem(grid.crs_wkt, where, grid.coordinate_epoch);
     if (!system.ok()) continue;
     const Result<ReferenceSystem> below = geographicOf(system.value(), where);
-    // The header has the area's datum, the reference system the source's own.
-    if (below.ok() && below.value().horizontal_datum == grid.horizontal_datum) return below.value();
+    // A geodetic grid is in the area's datum. Of a projected one the header has the area's, and the reference
+    // system the source's own.
+    if (below.ok() && (grid.kind == "geodetic" || below.value().horizontal_datum == grid.horizontal_datum))
+      return below.value();
   }
   return std::nullopt;
 }
