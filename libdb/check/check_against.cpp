@@ -14,6 +14,7 @@
 #include "libdb/check/report_detail.h"
 #include "libdb/check/source_matching.h"
 #include "libdb/check/tile_loader.h"
+#include "libdb/source/gdal_session.h"
 
 namespace deltaz {
 namespace {
@@ -349,6 +350,7 @@ void checkAgainstSource(CheckContext& context) {
                                            context.options.against_name));
     return;
   }
+  const GdalSession session;  // reference systems are asked for places, some in vain
   // Resampling makes one grid of all sources.
   if (context.grids.size() == 1 && context.grids[0].header().resampling) {
     checkResampled(context, 0);

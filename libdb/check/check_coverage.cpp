@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "libdb/check/check_geometry.h"
 #include "libdb/check/parallel_report.h"
@@ -60,7 +62,9 @@ class NodeCoverage {
       const auto begin = full_.valid.begin() + static_cast<std::ptrdiff_t>(full_.index(columns_.begin, row));
       any_void = std::find(begin, begin + columns_.size(), 0) != begin + columns_.size();
     }
-    return any_void ? ofRegions() : ofRectangles();
+    std::array<double, 2> range = any_void ? ofRegions() : ofRectangles();
+    range[1] *= sampled_;
+    return range;
   }
 
  private:
@@ -70,21 +74,48 @@ class NodeCoverage {
     const auto stride = [](PostRange range) { return std::max<std::int64_t>(1, (range.size() - 1) / kNet); };
     const std::int64_t dx = geometry.isGeodetic() ? columns_.size() : stride(columns_);
     const std::int64_t dy = geometry.isGeodetic() ? 1 : stride(rows_);
-    double skew = 0;
+    constexpr std::size_t kKinds = 3;  // width, height, skew
+    std::array<double, kKinds> largest{}, change_east{}, change_north{};
+    std::vector<std::array<double, kKinds>> before;
     for (std::int64_t row = rows_.begin; row < rows_.end; row += dy) {
+      std::vector<std::array<double, kKinds>> samples;
       for (std::int64_t column = columns_.begin; column < columns_.end; column += dx) {
         const Vector3 here = geometry.placeAt(column, row).foot;
         const std::int64_t east = column + 1 < columns_.end ? column + 1 : column - 1;
         const std::int64_t north = row + 1 < rows_.end ? row + 1 : row - 1;
         const Vector3 x = geometry.placeAt(east, row).foot - here,
                       y = geometry.placeAt(column, north).foot - here;
-        width_ = std::max(width_, length(x));
-        height_ = std::max(height_, length(y));
-        if (!geometry.isGeodetic()) skew = std::max(skew, std::abs(dot(x, y)) / (length(x) * length(y)));
+        std::array<double, kKinds> sample = {length(x), length(y), 0};
+        if (!geometry.isGeodetic()) sample[2] = std::abs(dot(x, y)) / (sample[0] * sample[1]);
+        for (std::size_t k = 0; k < kKinds; ++k) {
+          largest[k] = std::max(largest[k], sample[k]);
+          if (!samples.empty())
+            change_east[k] = std::max(change_east[k], std::abs(sample[k] - samples.back()[k]));
+          if (samples.size() < before.size())
+            change_north[k] = std::max(change_north[k], std::abs(sample[k] - before[samples.size()][k]));
+        }
+        samples.push_back(sample);
       }
+      before = std::move(samples);
     }
-    width_ *= std::sqrt(1 + skew);
-    height_ *= std::sqrt(1 + skew);
+    const double skew = std::sqrt(1 + largest[2]);
+    width_ = largest[0] * skew;
+    height_ = largest[1] * skew;
+    if (geometry.isGeodetic()) return;
+    // What the format lets a builder add: the change from one of 17 x 17 posts to the next, which is no more
+    // than that over so many of the strides here.
+    const auto strides = [](PostRange range, std::int64_t taken) {
+      constexpr std::int64_t kSamples = 16;
+      const std::int64_t apart = ceilDivide(range.size() - 1, std::min(kSamples, range.size() - 1));
+      return static_cast<double>(ceilDivide(apart, taken) + (taken > 1 ? 1 : 0));
+    };
+    std::array<double, kKinds> most{};
+    for (std::size_t k = 0; k < kKinds; ++k) {
+      most[k] =
+          largest[k] + std::max(strides(columns_, dx) * change_east[k], strides(rows_, dy) * change_north[k]);
+    }
+    sampled_ =
+        std::max(most[0] / largest[0], most[1] / largest[1]) * std::sqrt(1 + std::min(1.0, most[2])) / skew;
   }
 
   double distance(const Post& a, const Post& b) const {
@@ -341,6 +372,7 @@ class NodeCoverage {
   std::int64_t step_;
   PostRange columns_, rows_;
   double width_ = 0, height_ = 0;  // metres a post
+  double sampled_ = 1;             // how much larger they may be taken, being sampled
 };
 
 }  // namespace

@@ -3,16 +3,21 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
+#include <string>
 
 #include "libdb/check/check_geometry.h"
 #include "libdb/check/report_detail.h"
+#include "libdb/source/gdal_session.h"
+#include "libdb/source/reference_system.h"
 
 namespace deltaz {
 namespace {
 
 constexpr double kRounding = 1e-6;  // metres
-// A fourth difference of exact positions is about R (s / R)^4 for points s apart on a sphere of radius R;
-// maps distort it, near the edge of their use by some tens.
+// A map bends over distances like the Earth's radius R in its own plane: a fourth difference of exact
+// positions s apart on the Earth, and m on the map, is about s (m / R)^3. Near the edge of a map's use, where
+// s may be far smaller than m, by some tens more.
 constexpr double kDistortion = 100;
 // The weights of a fourth difference, 1 -4 6 -4 1, add up to this.
 constexpr double kWeights = 16;
@@ -23,7 +28,16 @@ class PatchRule {
       : context_(context),
         grid_(grid),
         ellipsoid_(context.grids[grid].header().ellipsoid),
-        lattice_(lattice) {}
+        lattice_(lattice) {
+    const GridHeader& header = context.grids[grid].header();
+    const Result<ReferenceSystem> system =
+        parseReferenceSystem(header.crs_wkt, std::string(kAreaFileName), header.coordinate_epoch);
+    if (!system.ok()) return;
+    const double metres = system.value().projected ? system.value().metres_per_unit
+                                                   : ellipsoid_.semi_major_axis * std::numbers::pi / 180;
+    const auto step = static_cast<double>(lattice.step());
+    map_step_ = {step * header.x_axis.spacing * metres, step * header.y_axis.spacing * metres};
+  }
 
   void run() {
     bool all_on_ellipsoid = true;
@@ -78,8 +92,9 @@ class PatchRule {
         if (k > 0) apart = std::max(apart, length(at(k) - at(k - 1)));
       }
       const double radius = ellipsoid_.semi_major_axis;
+      const double on_map = std::max(apart, map_step_[step[0] != 0 ? 0 : 1]);
       const double most = kWeights * (lattice_.placement.error + kRounding) +
-                          kDistortion * radius * std::pow(apart / radius, 4);
+                          kDistortion * apart * std::pow(on_map / radius, 3);
       if (length(difference) <= most) continue;
       complain(start[0] + (first + 2) * step[0], start[1] + (first + 2) * step[1],
                fmt::format("is out of line with its neighbours by about {:.6f} m", length(difference) / 6),
@@ -92,11 +107,13 @@ class PatchRule {
   std::uint16_t grid_;
   EllipsoidShape ellipsoid_;
   const PatchLattice& lattice_;
+  std::array<double, 2> map_step_{};  // metres on the map from point to point; 0 if its unit is unknown
 };
 
 }  // namespace
 
 void checkPatches(CheckContext& context, std::uint16_t grid) {
+  const GdalSession session;
   if (const auto& lattice = context.grids[grid].patches()) PatchRule(context, grid, *lattice).run();
 }
 

@@ -155,6 +155,15 @@ Result<int> check(const Options& options) {
   if (report.fatal) {
     std::cout.flush();
     printError("dbcheck", *report.fatal);
+  } else if (judgement.verdict == Verdict::kUnknown) {
+    std::cout.flush();
+    Error unknown;
+    unknown.where = request.area;
+    unknown.what = "the verdict is unknown";
+    unknown.why = "not everything was checked";
+    if (!report.skipped.empty()) unknown.why += ": " + report.skipped.front();
+    if (!request.against.empty()) unknown.remedy = "Name all sources behind --against, if some are missing there";
+    printError("dbcheck", unknown);
   }
   return judgement.exit_code;
 }
