@@ -5,6 +5,7 @@
 //
 // Sources with the same reference system, spacing and phase that touch or overlap become one grid: where they
 // overlap the earlier named one wins, and a void never wins over a height. All others are grids of their own.
+// A grid that goes round the Earth with each meridian once has its first column again at its end.
 // What is not read is refused, saying why: rotated rasters, colour tables, several bands without a choice of
 // one, ... Errors: kCannotAccess (missing, unreadable, out of memory), kInvalid (not a raster, truncated, all
 // void, ...), kUsage (no CRS, wrong option). GDAL's exceptions and messages end here. Cost: all posts in
@@ -31,6 +32,7 @@ struct SourceBounds {
   double west = 0, south = 0, east = 0, north = 0;
 };
 
+// Filled are voids over which no other grid of the area has a surface.
 enum class VoidPolicy : std::uint8_t { kKeep, kFill };
 
 // A spacing of posts as people name it.

@@ -175,6 +175,17 @@ def a_cut_across_the_seam_of_a_globe_has_both_sides(folder):
 
 
 @case
+def bounds_over_ground_that_is_not_there_leave_two_grids(folder):
+    source, area = globe(folder, "most", -180, 350, "area"), folder / "two.dz"
+    ended = run("dbbuild", "terrain", source, "-o", area, "--bounds", "160,25,-170,30")
+    require("two grids" in ended.err, ended)
+    grids = info(area)["grids"]
+    require([grid["longitude"]["count"] for grid in grids] == [11, 11], grids)
+    compared = run("dbcheck", area, "--level", "all", "--against", source, "--json").json()["checked"]["posts_compared"]
+    require(compared == 2 * 11 * 7, compared)
+
+
+@case
 def a_globe_without_a_shared_meridian_is_closed_and_comes_back_as_it_was(folder):
     cells = globe(folder, "cells", -180, 360, "area")
     east, west = globe(folder, "east", 0, 180, "area"), globe(folder, "west", -180, 180, "area")
