@@ -162,7 +162,8 @@ Result<int> check(const Options& options) {
     unknown.what = "the verdict is unknown";
     unknown.why = "not everything was checked";
     if (!report.skipped.empty()) unknown.why += ": " + report.skipped.front();
-    if (!request.against.empty()) unknown.remedy = "Name all sources behind --against, if some are missing there";
+    if (!request.against.empty())
+      unknown.remedy = "Name all sources behind --against, if some are missing there";
     printError("dbcheck", unknown);
   }
   return judgement.exit_code;

@@ -30,7 +30,7 @@ std::optional<CheckLevel> levelFromName(const std::string& name);
 
 // What was asked for, and of what: the heading of both forms of the report.
 struct CheckRequest {
-  std::string area;  // as given
+  std::string area;                  // as given
   std::vector<std::string> against;  // paths; none without comparison
   CheckLevel level = CheckLevel::kDecode;
   Severity fail_on = Severity::kError;
