@@ -5,24 +5,16 @@
 
 #include "libdb/access/seam_geometry.h"
 #include "libdb/check/check_geometry.h"
+#include "libdb/check/node_spheres.h"
 #include "libdb/check/report_detail.h"
 
 namespace deltaz {
 namespace {
 
-constexpr double kSphereTolerance = 1e-6;  // metres: roundings of positions; the stored radius is rounded up
-
 class SeamRule {
  public:
-  SeamRule(CheckContext& context, TileLoader& loader) : context_(context), loader_(loader) {
-    centroids_.resize(context.records.size() + 1);
-    centroids_[0] = context.area.centroid;
-    for (std::uint32_t number = 1; number <= context.records.size(); ++number) {
-      centroids_[number] = centroids_[context.parents[number - 1]];
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        centroids_[number][axis] += context.record(number).centroid_offset[axis];
-    }
-  }
+  SeamRule(CheckContext& context, TileLoader& loader)
+      : context_(context), loader_(loader), spheres_(context) {}
 
   void add(std::size_t number, SeamFaces& of_leaves) {
     const Seam& seam = context_.seams[number];
@@ -80,14 +72,10 @@ class SeamRule {
 
   void holdInSpheres(std::uint32_t leaf, const std::array<Vector3, 3>& face) {
     for (std::uint32_t above = leaf; above != 0; above = context_.parents[above - 1]) {
-      const auto& units = centroids_[above];
-      const Vector3 centre{static_cast<double>(units[0]) * kCentroidUnit,
-                           static_cast<double>(units[1]) * kCentroidUnit,
-                           static_cast<double>(units[2]) * kCentroidUnit};
       double outside = 0;
       for (const Vector3& vertex : face)
-        outside = std::max(outside, length(vertex - centre) - context_.record(above).radius * kCentroidUnit);
-      if (outside <= kSphereTolerance) continue;
+        outside = std::max(outside, length(vertex - spheres_.centre(above)) - spheres_.radius(above));
+      if (outside <= NodeSpheres::kTolerance) continue;
       addLazily(context_.report, IssueCode::kTileSphere, outside, [&] {
         return makeIssue(IssueCode::kTileSphere,
                          fmt::format("a face of a seam that leaf {} draws lies {:.3f} m outside its sphere",
@@ -99,8 +87,8 @@ class SeamRule {
 
   CheckContext& context_;
   TileLoader& loader_;
-  std::vector<std::array<std::int64_t, 3>> centroids_;  // by record number; the area's first
-  bool on_void_ = false;                                // what positionAt found last
+  const NodeSpheres spheres_;
+  bool on_void_ = false;  // what positionAt found last
 };
 
 }  // namespace

@@ -8,9 +8,11 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <string_view>
 
 #include "libdb/check/check_context.h"
+#include "libdb/check/node_spheres.h"
 #include "libdb/check/parallel_report.h"
 #include "libdb/check/report_detail.h"
 #include "libdb/check/tile_loader.h"
@@ -18,15 +20,12 @@
 namespace deltaz {
 namespace {
 
-// What the rounding of double positions may add to a distance, metres; the stored radius is rounded up.
-constexpr double kSphereTolerance = 1e-6;
-
 class TerrainRule {
  public:
   explicit TerrainRule(CheckContext& context) : context_(context), loader_(context) {}
 
   void run() {
-    if (context_.tree_sound) placeCentroids();
+    if (context_.tree_sound) spheres_.emplace(context_);
     parallelReport(context_.report, context_.records.size(), 16, [&](std::size_t item, Report& report) {
       const auto number = static_cast<std::uint32_t>(item + 1);
       const NodeRecord& record = context_.record(number);
@@ -144,18 +143,6 @@ class TerrainRule {
                          whereOf(number)));
   }
 
-  void placeCentroids() {
-    centroids_.resize(context_.records.size());
-    // Breadth-first order puts every parent before its children.
-    for (std::uint32_t number = 1; number <= context_.records.size(); ++number) {
-      const std::uint32_t parent = context_.parents[number - 1];
-      std::array<std::int64_t, 3> centroid = parent == 0 ? context_.area.centroid : centroids_[parent - 1];
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        centroid[axis] += context_.record(number).centroid_offset[axis];
-      centroids_[number - 1] = centroid;
-    }
-  }
-
   void checkSpheres(std::uint32_t number, const NodeRecord& record, const LoadedTile& tile, Report& report) {
     const GridGeometry& geometry = context_.grids[record.grid];
     const std::vector<PostPlace> places = geometry.postPlaces(0, tile.columns, tile.rows);
@@ -170,11 +157,8 @@ class TerrainRule {
       }
     }
     for (std::uint32_t above = number; above != 0; above = context_.parents[above - 1]) {
-      const auto& units = centroids_[above - 1];
-      const Vector3 centre{static_cast<double>(units[0]) * kCentroidUnit,
-                           static_cast<double>(units[1]) * kCentroidUnit,
-                           static_cast<double>(units[2]) * kCentroidUnit};
-      const double radius = static_cast<double>(context_.record(above).radius) * kCentroidUnit;
+      const Vector3 centre = spheres_->centre(above);
+      const double radius = spheres_->radius(above);
       std::size_t farthest = 0;
       double distance = -1;
       for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -184,7 +168,7 @@ class TerrainRule {
           farthest = i;
         }
       }
-      if (positions.empty() || std::sqrt(distance) <= radius + kSphereTolerance) continue;
+      if (positions.empty() || std::sqrt(distance) <= radius + NodeSpheres::kTolerance) continue;
       IssueLocation where = wherePost(number, posts[farthest].first, posts[farthest].second);
       where.file = context_.nodes->reference.name;
       where.node = above;
@@ -316,7 +300,7 @@ class TerrainRule {
 
   CheckContext& context_;
   TileLoader loader_;
-  std::vector<std::array<std::int64_t, 3>> centroids_;  // kCentroidUnit, by record
+  std::optional<NodeSpheres> spheres_;  // if the tree is sound
 };
 
 }  // namespace
