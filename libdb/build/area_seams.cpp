@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "libdb/access/grid_locator.h"
+#include "libdb/access/seam_geometry.h"
 #include "libdb/build/seam_builder.h"
 
 namespace deltaz {
@@ -78,7 +79,7 @@ Result<std::vector<Seam>> makeSeams(std::span<const RawGrid> grids) {
       }
       if (hidden) continue;
       for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
-        const std::uint16_t grid = side == SeamSide::kUpper ? seam->upper : seam->lower;
+        const std::uint16_t grid = gridOf(*seam, side);
         for (const ReplacedFace& face : seam->replacedOf(side)) {
           if (replaced.emplace(grid, face.row, face.column, face.top).second) continue;
           for (const Seam& before : seams) {

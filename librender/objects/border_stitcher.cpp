@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "libdb/access/seam_geometry.h"
+
 namespace deltaz {
 namespace {
 
@@ -280,7 +282,7 @@ std::optional<BorderStitcher::Resolved> BorderStitcher::ownPost(std::uint16_t gr
 
 std::optional<BorderStitcher::Resolved> BorderStitcher::seamVertex(const Seam& seam,
                                                                    const SeamVertex& vertex) const {
-  const std::uint16_t grid = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
+  const std::uint16_t grid = gridOf(seam, vertex.side);
   // A post may lie on a border with a coarser node, too; a point between posts never does.
   if (vertex.weight1 == 0 && vertex.weight2 == 0) return resolve(grid, vertex.column, vertex.row);
   const auto p0 = ownPost(grid, vertex.column, vertex.row);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "libdb/access/seam_geometry.h"
+
 namespace deltaz {
 namespace {
 
@@ -39,14 +41,14 @@ SeamIndex::SeamIndex(const Database& database) : seams_(&database.seams()) {
   for (std::uint32_t s = 0; s < seams_->size(); ++s) {
     const Seam& seam = (*seams_)[s];
     for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
-      const std::uint16_t grid = side == SeamSide::kUpper ? seam.upper : seam.lower;
+      const std::uint16_t grid = gridOf(seam, side);
       for (const ReplacedFace& face : seam.replacedOf(side)) {
         LeafSeams& leaf = leaves_[leafOf(grids_[grid], grid, face.column, face.row)];
         leaf.replaced.push_back({s, face});
         for (std::uint32_t f = 0; f < face.face_count; ++f) {
           for (const std::uint32_t v : seam.faces[face.first_face + f]) {
             const SeamVertex& vertex = seam.vertices[v];
-            const std::uint16_t of = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
+            const std::uint16_t of = gridOf(seam, vertex.side);
             const NodePosition partner = leafOf(grids_[of], of, vertex.column, vertex.row);
             if (std::find(leaf.partners.begin(), leaf.partners.end(), partner) == leaf.partners.end())
               leaf.partners.push_back(partner);
