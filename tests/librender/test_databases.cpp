@@ -31,16 +31,6 @@ std::optional<MemoryDatabase> databaseOfFile(const std::string& path) {
   return makeDatabaseOf(grid.value(), 64);
 }
 
-SyntheticGridOptions smallArea() {
-  SyntheticGridOptions options;
-  options.south = 46.8;
-  options.west = -121.8;
-  options.spacing_latitude = options.spacing_longitude = {3, 1};
-  options.lowest = 500;
-  options.highest = 3200;
-  return options;
-}
-
 Picture draw(EngineKind kind, const Database& database, const RenderOptions& options,
              FrameStatistics& statistics) {
   Result<Picture> picture = makeEngine(kind)->render(database, options, statistics);

@@ -8,7 +8,7 @@
 #include "libdb/access/database.h"
 #include "librender/scene/render.h"
 #include "tests/support/memory_file_system.h"
-#include "tests/support/synthetic_grid.h"
+#include "tests/support/small_area.h"
 
 namespace deltaz {
 
@@ -23,9 +23,6 @@ MemoryDatabase makeDatabase(const SyntheticGridOptions& options, int leaf_cells 
 MemoryDatabase makeDatabaseOf(const RawGrid& grid, int leaf_cells);
 // Of a DEM file; nothing if there is no such file.
 std::optional<MemoryDatabase> databaseOfFile(const std::string& path);
-
-// Rough country near Rainier, 121 x 121 posts of 3 arc-seconds.
-SyntheticGridOptions smallArea();
 
 // Draws; throws std::runtime_error on an error.
 Picture draw(EngineKind kind, const Database& database, const RenderOptions& options,

@@ -8,6 +8,7 @@
 
 #include "formats/terrain_segment.h"
 #include "libdb/access/earth.h"
+#include "tests/support/small_area.h"
 
 namespace deltaz {
 namespace {
@@ -163,13 +164,7 @@ RawGrid projectedGrid(std::int64_t columns, std::int64_t rows, double spacing) {
 }
 
 NamedGrid hills() {
-  SyntheticGridOptions options;
-  options.south = 46.8;
-  options.west = -121.8;
-  options.spacing_latitude = options.spacing_longitude = {3, 1};
-  options.lowest = 500;
-  options.highest = 3200;
-  return {"hills", syntheticGrid(options), 16};
+  return {"hills", syntheticGrid(smallArea()), 16};
 }
 
 }  // namespace deltaz
