@@ -26,7 +26,11 @@ constexpr std::int64_t kMaximumPostIndex = std::int64_t{1} << 40;
 constexpr std::int64_t kMaximumPostCount = std::int64_t{1} << 31;
 constexpr int kMaximumLevels = 32;
 
-constexpr std::array<std::string_view, 4> kRoleNames = {"nodes", "terrain", "patches", "seams"};
+constexpr std::array<std::string_view, 7> kRoleNames = {"nodes",  "terrain", "patches",   "seams",
+                                                        "colors", "model",   "placements"};
+// What a reader must know to read more than terrain.
+constexpr std::string_view kColorFeature = "colors", kModelFeature = "models";
+constexpr std::size_t kMostAssets = 1 << 16;
 constexpr std::size_t kMaximumSentinels = 64;
 
 std::span<const std::byte> asBytes(std::string_view text) {
@@ -108,6 +112,24 @@ Json toJson(const GridHeader& grid) {
   json["diagonal"] = grid.diagonal;
   json["sources"] = Json::array();
   for (const SourceDescription& source : grid.sources) json["sources"].push_back(toJson(source));
+  return json;
+}
+
+// Provenance: names to text.
+Json optionsToJson(const std::vector<std::pair<std::string, std::string>>& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options) json[name] = value;
+  return json;
+}
+
+Json toJson(const AssetHeader& asset) {
+  Json json;
+  json["name"] = asset.name;
+  json["origin"] = asset.origin;
+  json["sources"] = Json::array();
+  for (const SourceFile& source : asset.sources)
+    json["sources"].push_back({{"name", source.name}, {"content", toHex(source.content)}});
+  json["options"] = optionsToJson(asset.options);
   return json;
 }
 
@@ -341,7 +363,7 @@ FileReference readFile(const Json& json, const std::string& path, std::string& f
   const std::string role = members.text("role");
   const auto known = std::find(kRoleNames.begin(), kRoleNames.end(), role);
   if (known == kRoleNames.end()) {
-    members.fail("role", "is none of nodes, terrain, patches, seams");
+    members.fail("role", "is none of nodes, terrain, patches, seams, colors, model, placements");
   } else {
     file.role = static_cast<FileRole>(known - kRoleNames.begin());
   }
@@ -355,6 +377,49 @@ FileReference readFile(const Json& json, const std::string& path, std::string& f
   file.length = static_cast<std::uint64_t>(members.integer("length", 0, INT64_MAX));
   file.id = members.hash("id");
   return file;
+}
+
+std::vector<std::pair<std::string, std::string>> readOptions(Members& members) {
+  std::vector<std::pair<std::string, std::string>> result;
+  const Json* options = members.find("options");
+  if (options == nullptr) return result;
+  if (!options->is_object()) return members.fail("options", "is not an object"), result;
+  for (const auto& [name, value] : options->items()) {
+    if (!value.is_string()) members.fail("options." + name, "is not text");
+    result.emplace_back(name, value.is_string() ? value.get<std::string>() : std::string());
+  }
+  return result;
+}
+
+AssetHeader readAsset(const Json& json, const std::string& path, std::string& fault) {
+  Members members(json, path, fault);
+  AssetHeader asset;
+  asset.name = members.text("name");
+  if (!isAssetName(asset.name)) members.fail("name", "is not a name");
+  asset.origin = members.text("origin");
+  for (const Json& source : members.array("sources", 0, 1 << 20)) {
+    Members of_source(source, path + "sources.", fault);
+    const std::string name = of_source.text("name");
+    asset.sources.push_back({name, of_source.hash("content")});
+  }
+  asset.options = readOptions(members);
+  return asset;
+}
+
+// The colour maps or the models. A database that has none does not mention them, as those of the first
+// program did not.
+std::vector<AssetHeader> readAssets(const Json& json, Members& members, const char* member,
+                                    std::string& fault) {
+  std::vector<AssetHeader> assets;
+  if (!json.is_object() || !json.contains(member)) return assets;
+  const Json& list = members.array(member, 1, kMostAssets);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    assets.push_back(readAsset(list[i], fmt::format("{}[{}].", member, i), fault));
+    for (std::size_t k = 0; k < i; ++k) {
+      if (assets[k].name == assets[i].name) members.fail(member, "has one name twice");
+    }
+  }
+  return assets;
 }
 
 AreaHeader readArea(const Json& json, std::string& fault) {
@@ -383,25 +448,37 @@ AreaHeader readArea(const Json& json, std::string& fault) {
   const Json& grids = members.array("grids", 1, 1 << 16);
   for (std::size_t i = 0; i < grids.size(); ++i)
     area.grids.push_back(readGrid(grids[i], fmt::format("grids[{}].", i), fault));
+  area.color_maps = readAssets(json, members, "color_maps", fault);
+  area.models = readAssets(json, members, "models", fault);
   const Json& files = members.array("files", 1, 1 << 20);
   for (std::size_t i = 0; i < files.size(); ++i)
     area.files.push_back(readFile(files[i], fmt::format("files[{}].", i), fault));
   Members provenance = members.object("provenance");
   area.tool_version = provenance.text("tool");
-  if (const Json* options = provenance.find("options"); options != nullptr) {
-    if (!options->is_object()) {
-      provenance.fail("options", "is not an object");
-    } else {
-      for (const auto& [name, value] : options->items()) {
-        if (!value.is_string()) provenance.fail("options." + name, "is not text");
-        area.options.emplace_back(name, value.is_string() ? value.get<std::string>() : std::string());
-      }
-    }
-  }
+  area.options = readOptions(provenance);
   return area;
 }
 
 }  // namespace
+
+bool isAssetName(std::string_view name) {
+  constexpr std::size_t kLongest = 64;
+  const auto plain = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  return !name.empty() && name.size() <= kLongest && name.front() != '.' && name.back() != '.' &&
+         name.front() != '-' && name != "none" && std::all_of(name.begin(), name.end(), plain);
+}
+
+bool isPrintableName(std::string_view name) {
+  const bool control = std::any_of(name.begin(), name.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  if (name.empty() || control) return false;
+  // The JSON library refuses what is not UTF-8.
+  const std::string text = Json(std::string(name)).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.find("\xEF\xBF\xBD") == std::string::npos;
+}
 
 std::string_view fileRoleName(FileRole role) {
   return kRoleNames[static_cast<std::size_t>(role)];
@@ -412,6 +489,8 @@ std::string serializeArea(const AreaHeader& area) {
   json["format"] = kFormatName;
   json["version"] = kAreaVersion;
   json["required_features"] = Json::array();
+  if (!area.color_maps.empty()) json["required_features"].push_back(kColorFeature);
+  if (!area.models.empty()) json["required_features"].push_back(kModelFeature);
   json["optional_features"] = Json::array();
   json["generation"] = area.generation;
   json["bounds"] = {{"west", area.west}, {"south", area.south}, {"east", area.east}, {"north", area.north}};
@@ -421,11 +500,15 @@ std::string serializeArea(const AreaHeader& area) {
   json["nodes"] = {{"count", area.node_count}, {"per_page", area.nodes_per_page}};
   json["grids"] = Json::array();
   for (const GridHeader& grid : area.grids) json["grids"].push_back(toJson(grid));
+  for (const auto& [member, assets] :
+       {std::pair("color_maps", &area.color_maps), std::pair("models", &area.models)}) {
+    if (assets->empty()) continue;
+    json[member] = Json::array();
+    for (const AssetHeader& asset : *assets) json[member].push_back(toJson(asset));
+  }
   json["files"] = Json::array();
   for (const FileReference& file : area.files) json["files"].push_back(toJson(file));
-  Json options = Json::object();
-  for (const auto& [name, value] : area.options) options[name] = value;
-  json["provenance"] = {{"tool", area.tool_version}, {"options", options}};
+  json["provenance"] = {{"tool", area.tool_version}, {"options", optionsToJson(area.options)}};
   // A file name that is not UTF-8 must not make a database unreadable: its odd bytes become replacement
   // characters.
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
@@ -465,10 +548,11 @@ Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
         fmt::format("the database has version {}, newer than this program knows ({})", version, kAreaVersion),
         "Use a newer deltaz");
   }
-  if (const Json& required = members.array("required_features", 0, 1000); !required.empty()) {
+  for (const Json& feature : members.array("required_features", 0, 1000)) {
+    if (feature == kColorFeature || feature == kModelFeature) continue;
     return newerFormatError(IssueCode::kHdrFeatureUnknown, where,
-                            fmt::format("the database needs features this program does not have: {}",
-                                        required.dump(-1, ' ', true, Json::error_handler_t::replace)),
+                            fmt::format("the database needs a feature this program does not have: {}",
+                                        feature.dump(-1, ' ', true, Json::error_handler_t::replace)),
                             "Use a newer deltaz");
   }
   const bool may_hold_more = !members.array("optional_features", 0, 1000).empty();

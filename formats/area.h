@@ -129,16 +129,40 @@ struct GridHeader {
   bool operator==(const GridHeader&) const = default;
 };
 
-enum class FileRole : std::uint8_t { kNodes, kTerrain, kPatches, kSeams };
+// What a colour map or a model was made from.
+struct SourceFile {
+  std::string name;  // base name
+  Hash128 content;   // of the file's bytes
+  bool operator==(const SourceFile&) const = default;
+};
 
-// "nodes", "terrain", "patches", "seams".
+// A colour map (color_file.h) or a model (model_file.h) of the area, and how it came about.
+struct AssetHeader {
+  std::string name;    // isAssetName
+  std::string origin;  // colour maps: image, ramp, classes or synthetic; models: mesh
+  std::vector<SourceFile> sources;
+  std::vector<std::pair<std::string, std::string>> options;  // semantic ones, in the order of their names
+  bool operator==(const AssetHeader&) const = default;
+};
+
+// Names people give colour maps and models: 1 to 64 of A-Z a-z 0-9 _ - and inner dots; not "none", which
+// stands for no colour map at all.
+bool isAssetName(std::string_view name);
+// 1 or more bytes of valid UTF-8 without control characters.
+bool isPrintableName(std::string_view name);
+
+enum class FileRole : std::uint8_t { kNodes, kTerrain, kPatches, kSeams, kColors, kModel, kPlacements };
+
+// "nodes", "terrain", "patches", "seams", "colors", "model", "placements".
 std::string_view fileRoleName(FileRole role);
 
 struct FileReference {
   FileRole role = FileRole::kNodes;
-  std::uint32_t segment = 0;  // terrain: the number node records use; patches: the grid
-  std::string name;           // in the database folder; no slash
-  std::uint64_t length = 0;   // bytes
+  // terrain: the number node records use; patches: the grid; colors and model: index into color_maps and
+  // models
+  std::uint32_t segment = 0;
+  std::string name;          // in the database folder; no slash
+  std::uint64_t length = 0;  // bytes
   Hash128 id;
   bool operator==(const FileReference&) const = default;
 };
@@ -153,6 +177,8 @@ struct AreaHeader {
   std::uint32_t node_count = 0;
   std::uint32_t nodes_per_page = 0;
   std::vector<GridHeader> grids;
+  std::vector<AssetHeader> color_maps;  // names are unique among the maps, and among the models
+  std::vector<AssetHeader> models;
   std::vector<FileReference> files;
   std::string tool_version;  // provenance
   std::vector<std::pair<std::string, std::string>>

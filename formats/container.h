@@ -35,10 +35,30 @@ inline constexpr std::size_t kBlockAlignment = 8;
 inline constexpr std::uint32_t kMaximumBlockBytes = 1u << 30;
 
 // What the blocks of a file are.
-enum class ContentKind : std::uint16_t { kNodes = 1, kTerrain = 2, kPatches = 3, kSeams = 4 };
+enum class ContentKind : std::uint16_t {
+  kNodes = 1,
+  kTerrain = 2,
+  kPatches = 3,
+  kSeams = 4,
+  kColors = 5,
+  kModel = 6,
+  kPlacements = 7
+};
 
 // What one block is; stored in the index, append-only.
-enum class BlockType : std::uint32_t { kNodePage = 1, kTerrainNode = 2, kPatchRow = 3, kSeam = 4 };
+enum class BlockType : std::uint32_t {
+  kNodePage = 1,
+  kTerrainNode = 2,
+  kPatchRow = 3,
+  kSeam = 4,
+  kColorTile = 5,
+  kColorPage = 6,
+  kColorDirectory = 7,
+  kModelMesh = 8,
+  kModelTree = 9,
+  kPlacementPage = 10,
+  kPlacementDirectory = 11
+};
 
 struct BlockLocation {
   std::uint64_t offset = 0;  // of the payload from the start of the file, bytes

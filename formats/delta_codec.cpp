@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <memory>
-#include <zstd.h>
 
 #include "formats/bytes.h"
+#include "formats/zstd_packing.h"
 
 namespace deltaz {
 
 namespace {
-
-// Level 9 packs real terrain 4 % smaller than the default and still encodes faster than sources are read.
-constexpr int kZstdLevel = 9;
 
 std::uint32_t zigzag(std::int32_t value) {
   return (static_cast<std::uint32_t>(value) << 1) ^ static_cast<std::uint32_t>(value >> 31);
@@ -54,10 +50,6 @@ bool hasKinds(const HeightArray& array) {
   }
   return false;
 }
-
-struct ZstdCompressor {
-  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
-};
 
 }  // namespace
 
@@ -135,20 +127,12 @@ std::vector<std::byte> packHeights(const HeightArray& array, [[maybe_unused]] De
     }
   }
 
-  const std::unique_ptr<ZSTD_CCtx, ZstdCompressor> context(ZSTD_createCCtx());
-  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
-  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 1);
-  std::vector<std::byte> packed(ZSTD_compressBound(raw.size()));
-  const std::size_t size =
-      ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
-  assert(!ZSTD_isError(size));
-
   ByteWriter writer;
   writer.put(static_cast<std::uint8_t>(planes));
   writer.put(parts);
   writer.put(std::uint16_t{0});
   writer.put(differences[0]);
-  writer.putBytes(std::span(packed).first(size));
+  writer.putBytes(packBytes(raw));
   return writer.take();
 }
 
@@ -174,9 +158,7 @@ Result<HeightArray> unpackHeights(std::span<const std::byte> bytes, DeltaPacking
   const std::size_t posts = static_cast<std::size_t>(columns) * rows;
   const std::size_t raw_size = (posts - 1) * planes + voidBytes(parts, posts);
   std::vector<std::byte> raw(raw_size);
-  const std::size_t size =
-      ZSTD_decompress(raw.data(), raw.size(), reader.rest().data(), reader.rest().size());
-  if (ZSTD_isError(size) || size != raw_size) return damaged("its compressed bytes are not what zstd wrote");
+  if (!unpackBytes(reader.rest(), raw)) return damaged("its compressed bytes are not what zstd wrote");
 
   std::vector<std::int32_t> differences(posts);
   differences[0] = first;

@@ -10,7 +10,7 @@ namespace deltaz {
 
 // Families: IO files, HDR headers and footers, IDX block index, SUM checksums, MAN area.json, REF node
 // references, TILE node record against its terrain, HGT heights, ERR stored errors, SRC database against
-// source.
+// source, COL colour maps, MDL models, PLC placements.
 #define DELTAZ_ISSUE_CODES(X)                    \
   X(kIoCannotRead, "IO_CANNOT_READ")             \
   X(kIoMissingFile, "IO_MISSING_FILE")           \
@@ -58,7 +58,20 @@ namespace deltaz {
   X(kSrcHeight, "SRC_HEIGHT")                    \
   X(kSrcVoid, "SRC_VOID")                        \
   X(kSrcExtent, "SRC_EXTENT")                    \
-  X(kSrcGeoreference, "SRC_GEOREFERENCE")
+  X(kSrcGeoreference, "SRC_GEOREFERENCE")        \
+  X(kColorTree, "COL_TREE")                      \
+  X(kColorTile, "COL_TILE")                      \
+  X(kColorBorder, "COL_BORDER")                  \
+  X(kColorFilter, "COL_FILTER")                  \
+  X(kModelTree, "MDL_TREE")                      \
+  X(kModelMesh, "MDL_MESH")                      \
+  X(kModelSphere, "MDL_SPHERE")                  \
+  X(kModelError, "MDL_ERROR")                    \
+  X(kModelLod, "MDL_LOD")                        \
+  X(kModelTransform, "MDL_TRANSFORM")            \
+  X(kPlacementRecord, "PLC_RECORD")              \
+  X(kPlacementSphere, "PLC_SPHERE")              \
+  X(kPlacementGround, "PLC_GROUND")
 
 enum class IssueCode : std::uint16_t {
   kNone,

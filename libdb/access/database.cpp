@@ -147,6 +147,10 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
       database.seam_file_ = std::move(reader);
       continue;
     }
+    if (reference.role != FileRole::kTerrain) {
+      DELTAZ_TRY(database.addAsset(reference, std::move(reader)));
+      continue;
+    }
     if (reference.segment != database.segments_.size()) {
       return invalidError(IssueCode::kManField, area_path, "the terrain segments are not numbered in order");
     }
@@ -161,6 +165,11 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
     database.grids_.emplace_back(header, patches[grid]);
   }
   if (!database.nodes_) return invalidError(IssueCode::kManField, area_path, "no node file is listed");
+  if (database.color_maps_.size() != database.area_.color_maps.size() ||
+      database.models_.size() != database.area_.models.size()) {
+    return invalidError(IssueCode::kManField, area_path,
+                        "not every colour map and every model has its file listed");
+  }
   const std::uint64_t pages = (std::uint64_t{database.area_.node_count} + kNodesPerPage - 1) / kNodesPerPage;
   if (database.nodes_->blockCount() != pages) {
     return invalidError(IssueCode::kManField, area_path,
@@ -170,6 +179,42 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
   database.page_cache_ = std::make_unique<PageCache>();
   database.page_cache_->pages.resize(pages);
   return database;
+}
+
+Status Database::addAsset(const FileReference& reference, std::unique_ptr<ContainerReader> reader) {
+  // Those of one kind are listed in the order of their headers.
+  const auto expect = [&](std::size_t index, std::size_t count) -> Status {
+    if (reference.segment == index && index < count) return Success{};
+    return invalidError(IssueCode::kManField, joinPath(path_, std::string(kAreaFileName)),
+                        fmt::format("file {} is listed out of order", reference.name));
+  };
+  if (reference.role == FileRole::kColors) {
+    DELTAZ_TRY(expect(color_maps_.size(), area_.color_maps.size()));
+    DELTAZ_TRY_ASSIGN(ColorMap map, ColorMap::open(std::move(reader), area_.grids));
+    color_maps_.push_back(std::move(map));
+  } else if (reference.role == FileRole::kModel) {
+    DELTAZ_TRY(expect(models_.size(), area_.models.size()));
+    DELTAZ_TRY_ASSIGN(Model model, Model::open(std::move(reader)));
+    models_.push_back(std::move(model));
+  } else {
+    DELTAZ_TRY(expect(placements_ ? 1 : 0, 1));
+    DELTAZ_TRY_ASSIGN(placements_, PlacementSet::open(std::move(reader), area_.models.size()));
+  }
+  return Success{};
+}
+
+std::optional<std::size_t> Database::findColorMap(std::string_view name) const {
+  for (std::size_t k = 0; k < area_.color_maps.size(); ++k) {
+    if (area_.color_maps[k].name == name) return k;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> Database::findModel(std::string_view name) const {
+  for (std::size_t k = 0; k < area_.models.size(); ++k) {
+    if (area_.models[k].name == name) return static_cast<std::uint32_t>(k);
+  }
+  return std::nullopt;
 }
 
 const ContainerReader* Database::terrainSegment(std::uint32_t segment) const {
@@ -285,6 +330,9 @@ std::uint64_t Database::bytesRead() const {
   for (const auto& segment : segments_) bytes += segment->bytesRead();
   for (const auto& file : patch_files_) bytes += file->bytesRead();
   if (seam_file_) bytes += seam_file_->bytesRead();
+  for (const ColorMap& map : color_maps_) bytes += map.file().bytesRead();
+  for (const Model& model : models_) bytes += model.file().bytesRead();
+  if (placements_) bytes += placements_->file().bytesRead();
   return bytes;
 }
 

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/area.h"
@@ -17,7 +19,9 @@
 #include "formats/node_file.h"
 #include "formats/seam.h"
 #include "formats/terrain_segment.h"
+#include "libdb/access/color_map.h"
 #include "libdb/access/grid_geometry.h"
+#include "libdb/access/model.h"
 #include "libdb/access/terrain_tile.h"
 
 namespace deltaz {
@@ -64,6 +68,14 @@ class Database {
   // How grids that overlap or touch meet; each an upper and a lower grid.
   const std::vector<Seam>& seams() const { return seams_; }
 
+  // Colour maps and models in area.json's order; placements, none if the database has none.
+  const std::vector<ColorMap>& colorMaps() const { return color_maps_; }
+  // Index of the colour map of this name.
+  std::optional<std::size_t> findColorMap(std::string_view name) const;
+  const std::vector<Model>& models() const { return models_; }
+  std::optional<std::uint32_t> findModel(std::string_view name) const;
+  const PlacementSet* placements() const { return placements_ ? &*placements_ : nullptr; }
+
   // The files behind it, for dbcheck.
   const ContainerReader& nodeFile() const { return *nodes_; }
   const ContainerReader* terrainSegment(std::uint32_t segment) const;
@@ -73,6 +85,7 @@ class Database {
   // One attempt; `text` becomes what stood in area.json.
   static Result<Database> openOnce(const FileSystem& files, const std::string& path,
                                    std::vector<std::byte>& text);
+  Status addAsset(const FileReference& reference, std::unique_ptr<ContainerReader> reader);
 
   std::string path_;
   AreaHeader area_;
@@ -83,6 +96,9 @@ class Database {
   std::vector<std::unique_ptr<ContainerReader>> patch_files_;
   std::unique_ptr<ContainerReader> seam_file_;
   std::vector<Seam> seams_;
+  std::vector<ColorMap> color_maps_;
+  std::vector<Model> models_;
+  std::optional<PlacementSet> placements_;
   struct PageCache {
     std::mutex mutex;
     std::vector<std::shared_ptr<const std::vector<NodeRecord>>> pages;

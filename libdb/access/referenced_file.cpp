@@ -14,6 +14,12 @@ ContentKind contentKindOf(FileRole role) {
       return ContentKind::kPatches;
     case FileRole::kSeams:
       return ContentKind::kSeams;
+    case FileRole::kColors:
+      return ContentKind::kColors;
+    case FileRole::kModel:
+      return ContentKind::kModel;
+    case FileRole::kPlacements:
+      return ContentKind::kPlacements;
   }
   return ContentKind::kTerrain;
 }

@@ -49,13 +49,45 @@ std::uint64_t generationOf(const std::string& name) {
   const bool ours = (name.starts_with("nodes-") && name.ends_with(".dzn")) ||
                     (name.starts_with("terrain-") && name.ends_with(".dzt")) ||
                     (name.starts_with("patches-") && name.ends_with(".dzp")) ||
-                    (name.starts_with("seams-") && name.ends_with(".dzj"));
+                    (name.starts_with("seams-") && name.ends_with(".dzj")) ||
+                    (name.starts_with("colors-") && name.ends_with(".dzc")) ||
+                    (name.starts_with("model-") && name.ends_with(".dzm")) ||
+                    (name.starts_with("placements-") && name.ends_with(".dzl"));
   if (!ours) return 0;
   const std::size_t dash = name.find('-');
   if (dash == std::string::npos) return 0;
   std::uint64_t generation = 0;
   std::from_chars(name.data() + dash + 1, name.data() + name.size(), generation);
   return generation;
+}
+
+// The names of the files it removed.
+Result<std::vector<std::string>> removeUnlistedFiles(const FileSystem& files, const std::string& folder,
+                                                     const AreaHeader& area) {
+  DELTAZ_TRY_ASSIGN(const std::vector<std::string> names, files.list(folder));
+  std::vector<std::string> removed;
+  for (const std::string& name : names) {
+    const bool listed = std::any_of(area.files.begin(), area.files.end(),
+                                    [&](const FileReference& file) { return file.name == name; });
+    if (listed || (generationOf(name) == 0 && name != kNewAreaName)) continue;
+    DELTAZ_TRY(files.removeFile(joinPath(folder, name)));
+    removed.push_back(name);
+  }
+  return removed;
+}
+
+// The header of a database that can be edited: a sound one.
+Result<AreaHeader> soundArea(const FileSystem& files, const std::string& target) {
+  const std::string path = joinPath(target, std::string(kAreaFileName));
+  DELTAZ_TRY_ASSIGN(const PathType type, files.typeOf(path));
+  if (type != PathType::kFile) {
+    return invalidError(IssueCode::kManSyntax, target, "this is not a deltaz database",
+                        "there is no area.json in it");
+  }
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, readWholeFile(files, path, kMaximumAreaBytes));
+  std::string text(bytes.size(), '\0');
+  std::transform(bytes.begin(), bytes.end(), text.begin(), [](std::byte b) { return static_cast<char>(b); });
+  return parseArea(text, path);
 }
 
 // Removes the temporary folders of builds that died: those whose lock nobody holds.
@@ -92,6 +124,8 @@ Publication::Publication(Publication&& other) noexcept
       target_(std::move(other.target_)),
       folder_(std::move(other.folder_)),
       replaces_(other.replaces_),
+      edits_(other.edits_),
+      area_(std::move(other.area_)),
       done_(std::exchange(other.done_, true)),
       made_folder_(other.made_folder_),
       generation_(other.generation_),
@@ -118,6 +152,21 @@ Result<Publication> Publication::begin(const FileSystem& files, const std::strin
     DELTAZ_TRY(publication.beginOverwrite());
   }
   return publication;
+}
+
+Result<Publication> Publication::beginEdit(const FileSystem& files, const std::string& target) {
+  // Before the lock, whose file would otherwise be made in any folder.
+  if (const Result<AreaHeader> area = soundArea(files, target); !area.ok()) return area.error();
+  Publication publication(files, target);
+  DELTAZ_TRY(publication.beginOverwrite());
+  DELTAZ_TRY_ASSIGN(publication.area_, soundArea(files, target));
+  publication.edits_ = true;
+  return publication;
+}
+
+Result<std::vector<std::string>> removeUnlisted(const FileSystem& files, const std::string& target) {
+  DELTAZ_TRY_ASSIGN(const Publication publication, Publication::beginEdit(files, target));
+  return removeUnlistedFiles(files, target, publication.area());
 }
 
 Status Publication::beginNew() {
@@ -201,14 +250,8 @@ Status Publication::publish(AreaHeader& area) {
   done_ = true;
   DELTAZ_TRY(files_->syncDirectory(folder_));
   // The files of older states, and of writers that died, serve nobody who opens from now on. Failing to
-  // remove them loses nothing.
-  const Result<std::vector<std::string>> names = files_->list(folder_);
-  if (!names.ok()) return Success{};
-  for (const std::string& name : names.value()) {
-    const bool listed = std::any_of(area.files.begin(), area.files.end(),
-                                    [&](const FileReference& file) { return file.name == name; });
-    if (!listed && generationOf(name) > 0) (void)files_->removeFile(joinPath(folder_, name));
-  }
+  // remove them loses nothing. An edit leaves them to removeUnlisted.
+  if (!edits_) (void)removeUnlistedFiles(*files_, folder_, area);
   return Success{};
 }
 

@@ -21,9 +21,18 @@ namespace deltaz {
 // (kUsage); its folder is missing (kCannotAccess).
 Status checkTarget(const FileSystem& files, const std::string& target, bool overwrite);
 
+// Removes the files in the folder of the database at `target` that carry a name of ours and that area.json
+// does not list, and left-overs of edits that died. Returns their names. kCannotAccess if a writer is at
+// work; kInvalid if it is no database or a damaged one.
+Result<std::vector<std::string>> removeUnlisted(const FileSystem& files, const std::string& target);
+
 class Publication {
  public:
   static Result<Publication> begin(const FileSystem& files, const std::string& target, bool overwrite);
+  // Starts an edit of the database at `target`: new files are added to it and area.json is swapped, nothing
+  // else is touched. Files no longer listed stay, for readers that still have the old state open, until
+  // removeUnlisted. kCannotAccess if another writer is at work.
+  static Result<Publication> beginEdit(const FileSystem& files, const std::string& target);
   Publication(Publication&&) noexcept;
   Publication& operator=(Publication&&) = delete;
   // Removes what was written unless publish() succeeded.
@@ -33,6 +42,8 @@ class Publication {
   std::string newFilePath(const std::string& name);
   // Number of this state of the database; part of the names of its files.
   std::uint64_t generation() const { return generation_; }
+  // Of an edit: the header as it stands, looked at under the lock.
+  const AreaHeader& area() const { return area_; }
   // Writes area.json and makes it all durable and visible. Sets area.generation. Once. If the very last step,
   // syncing the folder the target stands in, fails, the error says so although the target is there and
   // complete.
@@ -48,6 +59,8 @@ class Publication {
   std::string target_;
   std::string folder_;  // where files are written: temporary or the target itself
   bool replaces_ = false;
+  bool edits_ = false;
+  AreaHeader area_;
   bool done_ = false;
   bool made_folder_ = false;
   std::uint64_t generation_ = 1;

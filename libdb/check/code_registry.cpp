@@ -12,6 +12,12 @@ constexpr std::string_view kRestore =
 constexpr std::string_view kRebuild =
     "Rebuild the database from its sources. The checksums are right, so it was written like this: please "
     "report it with the tool version in area.json.";
+constexpr std::string_view kRebuildColors =
+    "Make the colour map anew (dbbuild color). The checksums are right, so it was written like this: please "
+    "report it with the tool version in area.json.";
+constexpr std::string_view kRebuildModel =
+    "Make the model anew (dbbuild model). The checksums are right, so it was written like this: please "
+    "report it with the tool version in area.json.";
 constexpr std::string_view kUpgrade =
     "Use a deltaz at least as new as the one that wrote the database (provenance in area.json).";
 
@@ -244,6 +250,64 @@ constexpr std::array kRegistry = {
                     "be compared post "
                     "for post.",
                     "Use the source the database was built from, or rebuild.", "area.md 3"},
+    CodeDescription{
+        IssueCode::kColorTree, kError, kStructure, "the tree of a colour map is wrong",
+        "A record of a colour map leads outside its file, stands where its parent does not say, is "
+        "reached twice or never, or its levels do not agree.",
+        kRebuildColors, "color_file.md 2"},
+    CodeDescription{IssueCode::kColorTile, kError, kDecode, "a tile of texels cannot be decoded",
+                    "The bytes are those that were written, and they are no tile of texels.", kRebuildColors,
+                    "color_file.md 3"},
+    CodeDescription{IssueCode::kColorBorder, kError, kDecode, "a tile's border differs from its neighbour",
+                    "The texels a tile carries of its neighbour are not the neighbour's own: pictures show a "
+                    "seam between the two.",
+                    kRebuildColors, "color_file.md 3"},
+    CodeDescription{
+        IssueCode::kColorFilter, kError, kDecode, "a texel is not the mean of those below it",
+        "A texel of a coarser level was recomputed, in linear light, from the four of the finer one, "
+        "and is another: colours change with distance.",
+        kRebuildColors, "color_file.md 4"},
+    CodeDescription{
+        IssueCode::kModelTree, kError, kStructure, "the tree of a model is wrong",
+        "A part has no parent that stands before it, names a mesh that is not there, or has a name "
+        "or a number that cannot be.",
+        kRebuildModel, "model_file.md 2"},
+    CodeDescription{IssueCode::kModelMesh, kError, kDecode, "a mesh of a model is wrong",
+                    "Its counts do not fit its length or its part, or a triangle names a vertex that is not "
+                    "there.",
+                    kRebuildModel, "model_file.md 3"},
+    CodeDescription{IssueCode::kModelSphere, kError, kDecode, "a model's sphere does not hold its meshes",
+                    "A vertex lies outside the sphere of its part or of the model, so that it may be missing "
+                    "in pictures that should show it.",
+                    kRebuildModel, "model_file.md 2"},
+    CodeDescription{
+        IssueCode::kModelError, kError, kGeometry, "a model's level of detail has a wrong error",
+        "The distance between a part's coarser mesh and its finest one was measured anew. The stored "
+        "one is too small, so that a picture is less exact than its tolerance says, or far too large.",
+        kRebuildModel, "model_file.md 4"},
+    CodeDescription{IssueCode::kModelLod, kError, kDecode, "a model's levels of detail are not in order",
+                    "A coarser level has more triangles than a finer one, or a smaller error; the finest has "
+                    "error 0.",
+                    kRebuildModel, "model_file.md 4"},
+    CodeDescription{IssueCode::kModelTransform, Severity::kWarning, kStructure,
+                    "a part's transform is more than rotation and one scale",
+                    "Light is computed in a part's own space, which is right only where the transform keeps "
+                    "angles: this part is lit wrongly.",
+                    "Apply the transform to the mesh before it is made a model.", "model_file.md 2"},
+    CodeDescription{IssueCode::kPlacementRecord, kError, kStructure, "a placement is wrong",
+                    "It names a model that is not there, has a number that another has or that was never "
+                    "given, or a position that cannot be.",
+                    "Place the models anew (dbbuild place).", "placement_file.md 2"},
+    CodeDescription{IssueCode::kPlacementSphere, kError, kDecode,
+                    "a page's sphere does not hold what stands on it",
+                    "A model reaches out of the sphere of its page, so that it may be missing in pictures "
+                    "that should show it.",
+                    "Place the models anew (dbbuild place).", "placement_file.md 3"},
+    CodeDescription{IssueCode::kPlacementGround, Severity::kWarning, kDecode,
+                    "a model does not stand on the ground",
+                    "It was placed in relation to the ground, and the ground is elsewhere: the terrain was "
+                    "changed afterwards, or there is none there.",
+                    "Place it anew (dbbuild place).", "placement_file.md 2"},
 };
 
 // Whoever adds a code to issue_code.h must describe it here, at the same place.

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "libdb/access/vertex_normals.h"
-#include "librender/scene/synthetic_color.h"
+#include "libdb/access/synthetic_color.h"
 
 namespace deltaz {
 namespace {

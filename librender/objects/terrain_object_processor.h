@@ -17,7 +17,7 @@
 #include "libdb/access/terrain_tile.h"
 #include "libdb/access/vector3.h"
 #include "librender/scene/camera.h"
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 #include "librender/scene/illumination.h"
 
 namespace deltaz {

@@ -16,6 +16,7 @@
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/coverage.h"
 #include "librender/scene/camera.h"
+#include "librender/scene/render.h"
 
 namespace deltaz {
 
@@ -53,6 +54,7 @@ struct FacePlanes {
   double least = 0, greatest = 0;  // 1/U over the vertices of what is in front of the hither plane
   std::array<std::array<float, 3>, 3> color{};  // of each vertex: red, green, blue, linear, lit
   std::uint64_t identity = 0;                   // as Picture::triangle
+  Surface surface = Surface::kTerrain;
 
   // 1/U at a sample. Within the vertices' range, so that slivers, whose samples may lie just outside the
   // unsnapped triangle, cannot extrapolate.

@@ -10,7 +10,7 @@
 
 #include "formats/area.h"
 #include "librender/scene/camera.h"
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 
 namespace deltaz {
 

@@ -9,11 +9,13 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/error.h"
 #include "libdb/access/database.h"
 #include "librender/scene/camera.h"
+#include "librender/scene/pose.h"
 
 namespace deltaz {
 
@@ -22,17 +24,23 @@ struct Sun {
   double elevation = 40;  // degrees above the horizon
 };
 
+inline constexpr std::string_view kNoColorMap = "none";
+
 struct RenderOptions {
   Camera camera;
   Sun sun;
   double tolerance = 1.0;  // pixels; 0 draws full resolution
   int fixed_level = -1;    // >= 0: draw this level whatever the tolerance (tests and benches)
   int threads = 0;         // 0: as many as the machine has
+  // Name of the colour map; empty for the database's first, kNoColorMap (or no map at all) for colours by
+  // rule (libdb/access/synthetic_color.h), which also show where a map has no cover.
+  std::string color_map;
+  std::vector<PartPose> poses;  // parts of models that do not stand as they do by default
   bool keep_triangle_ids = false;
 };
 
 // What covers a pixel.
-enum class Surface : std::uint8_t { kSky = 0, kSea = 1, kTerrain = 2 };
+enum class Surface : std::uint8_t { kSky = 0, kSea = 1, kTerrain = 2, kModel = 3 };
 
 struct Picture {
   int width = 0, height = 0;
@@ -40,7 +48,8 @@ struct Picture {
   std::vector<float> depth;       // U, metres along the view axis; +infinity for sky
   std::vector<Surface> surface;
   std::vector<std::uint64_t>
-      triangle;  // only with keep_triangle_ids: node record number << 32 | cell << 1 | (1 for the top face)
+      triangle;  // only with keep_triangle_ids: node record number << 32 | cell << 1 | (1 for the top face);
+                 // of a model: instance << 32 | triangle of the drawn mesh
 };
 
 struct FrameStatistics {

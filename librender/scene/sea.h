@@ -8,7 +8,7 @@
 #include "formats/area.h"
 #include "librender/scene/atmosphere.h"
 #include "librender/scene/camera.h"
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 #include "librender/scene/illumination.h"
 
 namespace deltaz {

@@ -3,7 +3,7 @@
 // Thread-safety: pure functions.
 #pragma once
 
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 
 namespace deltaz {
 

@@ -1,4 +1,4 @@
-#include "librender/scene/synthetic_color.h"
+#include "libdb/access/synthetic_color.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "librender/scene/color.h"
+#include "libdb/access/color.h"
 
 #include <array>
 #include <cmath>
