@@ -1,11 +1,14 @@
 #include "librender/fast_engine.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <tbb/parallel_for.h>
 #include <vector>
 
 #include "librender/objects/border_stitcher.h"
+#include "librender/objects/model_object_processor.h"
+#include "librender/objects/part_meshes.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/depth_frame_buffer.h"
 #include "librender/raster/pretiler.h"
@@ -13,6 +16,8 @@
 #include "librender/raster/tiler.h"
 #include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
+#include "librender/scene/model_tree_processor.h"
+#include "librender/scene/pose_table.h"
 #include "librender/scene/scheduler.h"
 #include "librender/scene/stopwatch.h"
 
@@ -47,13 +52,18 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
                                   statistics.nodes));
   statistics.level = schedule.level;
   statistics.coarsest_level = schedule.coarsest_level;
-  statistics.projected_error = schedule.projected_error;
+  DELTAZ_TRY_ASSIGN(const PoseTable poses, PoseTable::of(database, options.poses));
+  DELTAZ_TRY_ASSIGN(const ModelSchedule models,
+                    processModelTrees(modelSceneOf(database), poses, environment.view,
+                                      {options.tolerance, options.fixed_level}, statistics.models));
+  statistics.projected_error = std::max(schedule.projected_error, models.projected_error);
   statistics.milliseconds.schedule = watch.lap();
 
   const std::vector<CutNode>& cut = schedule.nodes;
   const CutIndex index(database, cut);
   const std::vector<std::uint8_t> wanted = nodesToProcess(database, cut, index, seams);
   DELTAZ_TRY_ASSIGN(const std::vector<std::optional<TerrainTile>> tiles, readTiles(database, cut, wanted));
+  DELTAZ_TRY_ASSIGN(const PartMeshes meshes, PartMeshes::read(database, models.parts));
   for (const std::optional<TerrainTile>& tile : tiles) {
     if (tile)
       statistics.posts_decoded +=
@@ -72,8 +82,9 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   });
   const BorderStitcher stitcher(database, cut, index, seams, processed);
   const Pretiler pretiler(environment.view);
-  std::vector<PretiledNode> pretiled(cut.size());
-  std::vector<FrameStatistics::Triangles> of_node(cut.size());
+  // Nodes of the terrain, then parts of models.
+  std::vector<PretiledNode> pretiled(cut.size() + models.parts.size());
+  std::vector<FrameStatistics::Triangles> of_node(pretiled.size());
   tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
     if (!cut[n].in_view) return;
     TerrainSplits splits;
@@ -82,6 +93,13 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     for (const TerrainFace& face : stitcher.seamFaces(static_cast<std::uint32_t>(n), stitched))
       addFace(faces, stitched.position, face);
     pretiler.process(stitched, faces, cut[n].node.number, pretiled[n]);
+    of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
+  });
+  tbb::parallel_for(std::size_t{0}, models.parts.size(), [&](std::size_t p) {
+    const DrawnPart& part = models.parts[p];
+    const ModelFaces faces = modelFaces(meshes.of(p), part.to_earth, environment.view, environment.light);
+    const std::size_t n = cut.size() + p;
+    pretiler.process(faces, part.instance, pretiled[n]);
     of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
   });
   for (const FrameStatistics::Triangles& counts : of_node) {

@@ -156,19 +156,40 @@ Pretiler::Pretiler(const ViewTransform& view) : view_(view) {}
 
 void Pretiler::process(const TerrainVertices& vertices, const TerrainFaces& faces, std::uint32_t record,
                        PretiledNode& out) const {
-  // Each post is projected and snapped once, though six faces use it.
-  std::vector<PlacedVertex> placed;
-  placed.reserve(vertices.position.size());
-  for (const Vector3& position : vertices.position) placed.push_back(place(view_, position));
+  const auto set_attributes = [&](const TerrainFace& face, FacePlanes& planes) {
+    setAttributes(vertices, face, record, planes);
+  };
+  processFaces(vertices.position, faces.front, set_attributes, out);
+}
 
-  for (const TerrainFace& face : faces.front) {
+void Pretiler::process(const ModelFaces& faces, std::uint32_t instance, PretiledNode& out) const {
+  const auto set_attributes = [&](const ModelFace& face, FacePlanes& planes) {
+    for (std::size_t k = 0; k < 3; ++k) planes.color[k] = toFloats(face.color[k]);
+    planes.identity = std::uint64_t{instance} << 32 | face.identity;
+    planes.surface = Surface::kModel;
+  };
+  processFaces(faces.position, faces.front, set_attributes, out);
+}
+
+template <typename Face, typename SetAttributes>
+void Pretiler::processFaces(const std::vector<Vector3>& position, const std::vector<Face>& faces,
+                            const SetAttributes& set_attributes, PretiledNode& out) const {
+  // Each vertex is projected and snapped once, though about six faces use it.
+  std::vector<PlacedVertex> placed;
+  placed.reserve(position.size());
+  for (const Vector3& p : position) placed.push_back(place(view_, p));
+
+  for (const Face& face : faces) {
     const PlacedVertex &a = placed[face.vertex[0]], &b = placed[face.vertex[1]], &c = placed[face.vertex[2]];
     if ((a.outcode & b.outcode & c.outcode & kRejecting) != 0) {
       ++out.clipped;
       continue;
     }
     if (((a.outcode | b.outcode | c.outcode) & (kBeforeHither | kOutsideGuardBand)) != 0) {
-      clipAndEmit(vertices, face, record, out);
+      FacePlanes planes;
+      set_attributes(face, planes);
+      clipAndEmit({position[face.vertex[0]], position[face.vertex[1]], position[face.vertex[2]]}, planes,
+                  out);
       continue;
     }
     SnappedTriangle triangle;
@@ -185,21 +206,18 @@ void Pretiler::process(const TerrainVertices& vertices, const TerrainFaces& face
     const auto [least, greatest] = std::minmax({a.screen.inverse_u, b.screen.inverse_u, c.screen.inverse_u});
     planes.least = least;
     planes.greatest = greatest;
-    setAttributes(vertices, face, record, planes);
+    set_attributes(face, planes);
   }
 }
 
-void Pretiler::clipAndEmit(const TerrainVertices& vertices, const TerrainFace& face, std::uint32_t record,
+void Pretiler::clipAndEmit(const std::array<Vector3, 3>& corners_of_face, FacePlanes planes,
                            PretiledNode& out) const {
-  ClipPolygon polygon({{{vertices.position[face.vertex[0]], 0, 0},
-                        {vertices.position[face.vertex[1]], 1, 0},
-                        {vertices.position[face.vertex[2]], 0, 1}}});
+  ClipPolygon polygon({{{corners_of_face[0], 0, 0}, {corners_of_face[1], 1, 0}, {corners_of_face[2], 0, 1}}});
   polygon.clip({1, 0, 0}, kHither);
   if (polygon.corners().size() < 3) {
     ++out.clipped;
     return;
   }
-  FacePlanes planes;
   std::vector<WeightedScreenVertex> corners;
   for (const ClipVertex& corner : polygon.corners()) {
     corners.push_back({project(view_, corner.position), corner.weight1, corner.weight2});
@@ -212,7 +230,6 @@ void Pretiler::clipAndEmit(const TerrainVertices& vertices, const TerrainFace& f
       corners.size() == 4 && screenArea(corners[0].screen, corners[2].screen, corners[3].screen) >
                                  screenArea(corners[0].screen, corners[1].screen, corners[2].screen);
   setPlanes({corners[0], corners[second_half ? 2 : 1], corners[second_half ? 3 : 2]}, planes);
-  setAttributes(vertices, face, record, planes);
 
   const double guard = kGuardBand;
   polygon.clip({guard, 1, 0}, 0);

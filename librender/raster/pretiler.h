@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "librender/objects/model_object_processor.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/coverage.h"
 #include "librender/scene/camera.h"
@@ -64,6 +65,7 @@ struct FacePlanes {
   }
 };
 
+// What comes of one terrain node, or of one part of a model.
 struct PretiledNode {
   std::vector<FacePlanes> faces;
   std::vector<SnappedTriangle> triangles;
@@ -77,10 +79,15 @@ class Pretiler {
   // Appends the node's front faces to `out` in their order. `record` is the node's record number.
   void process(const TerrainVertices& vertices, const TerrainFaces& faces, std::uint32_t record,
                PretiledNode& out) const;
+  // The same for the front faces of a part of the model that stands as `instance`.
+  void process(const ModelFaces& faces, std::uint32_t instance, PretiledNode& out) const;
 
  private:
-  void clipAndEmit(const TerrainVertices& vertices, const TerrainFace& face, std::uint32_t record,
-                   PretiledNode& out) const;
+  // `set_attributes(face, planes)` gives a face's planes all that does not depend on where it is.
+  template <typename Face, typename SetAttributes>
+  void processFaces(const std::vector<Vector3>& position, const std::vector<Face>& faces,
+                    const SetAttributes& set_attributes, PretiledNode& out) const;
+  void clipAndEmit(const std::array<Vector3, 3>& corners_of_face, FacePlanes planes, PretiledNode& out) const;
 
   ViewTransform view_;
 };

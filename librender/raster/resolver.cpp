@@ -45,7 +45,7 @@ ResolverStatistics resolve(const Environment& environment, const std::vector<Pre
         const double u = 1 / face.inverseDepthAt(j, i);
         if (u <= sea_u) {
           ++counts.shaded;
-          storePixel(environment, ray, Surface::kTerrain, u, colorAt(face, j, i, u), pixel, picture);
+          storePixel(environment, ray, face.surface, u, colorAt(face, j, i, u), pixel, picture);
           if (!picture.triangle.empty()) picture.triangle[pixel] = face.identity;
           continue;
         }

@@ -15,7 +15,7 @@ namespace deltaz {
 
 struct ResolverStatistics {
   std::uint64_t covered = 0;  // pixels on which some face was drawn
-  std::uint64_t shaded = 0;   // of these, the ones whose terrain is seen
+  std::uint64_t shaded = 0;   // of these, the ones where it is seen
 };
 
 ResolverStatistics resolve(const Environment& environment, const std::vector<PretiledNode>& nodes,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "librender/objects/terrain_object_processor.h"
+#include "librender/reference/reference_models.h"
 #include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/seam_index.h"
@@ -29,13 +30,15 @@ struct Vertex {
 struct Triangle {
   std::array<const Vertex*, 3> vertex{};
   std::uint64_t identity = 0;
+  Surface surface = Surface::kTerrain;
 };
 
-// A pixel's nearest terrain so far.
+// What is nearest in a pixel so far.
 struct Sample {
   double inverse_u = 0;
   LinearColor color;
   std::uint64_t identity = 0;
+  Surface surface = Surface::kTerrain;
 };
 
 // Inclusive pixel ranges that hold all a triangle can cover; only there to save time.
@@ -76,7 +79,7 @@ void addTriangle(std::vector<Triangle>& triangles, FrameStatistics::Triangles& c
     ++counts.back_facing;
     return;
   }
-  triangles.push_back({{&a, &b, &c}, identity});
+  triangles.push_back({{&a, &b, &c}, identity, Surface::kTerrain});
 }
 
 // The valid faces of a tile that are not turned away from the eye and that no seam has replaced.
@@ -240,7 +243,7 @@ bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, i
       sample = {inverse_u,
                 triangle.vertex[0]->color * (weight_a / sum) + triangle.vertex[1]->color * (weight_b / sum) +
                     triangle.vertex[2]->color * (weight_c / sum),
-                triangle.identity};
+                triangle.identity, triangle.surface};
     }
   }
   return covers;
@@ -256,10 +259,10 @@ Picture finish(const std::vector<Sample>& samples, const Environment& environmen
     const std::size_t j = pixel % width, i = pixel / width;
     const Vector3 ray = environment.view.ray(static_cast<double>(j), static_cast<double>(i));
     const double sea_u = environment.sea.depth(ray);
-    const double terrain_u = 1 / sample.inverse_u;  // infinite where there is none
+    const double nearest_u = 1 / sample.inverse_u;  // infinite where there is none
     covered += sample.inverse_u > 0;
-    if (sample.inverse_u > 0 && terrain_u <= sea_u) {
-      storePixel(environment, ray, Surface::kTerrain, terrain_u, sample.color, pixel, picture);
+    if (sample.inverse_u > 0 && nearest_u <= sea_u) {
+      storePixel(environment, ray, sample.surface, nearest_u, sample.color, pixel, picture);
       if (options.keep_triangle_ids) picture.triangle[pixel] = sample.identity;
       ++statistics.samples.shaded;
     } else if (sea_u < std::numeric_limits<double>::infinity()) {
@@ -272,6 +275,23 @@ Picture finish(const std::vector<Sample>& samples, const Environment& environmen
     statistics.depth_complexity =
         static_cast<double>(statistics.samples.tested) / static_cast<double>(covered);
   return picture;
+}
+
+// Of all placed models, with the vertices they refer to.
+std::vector<Triangle> modelTriangles(const std::vector<ReferenceModelTriangle>& models,
+                                     std::vector<Vertex>& vertices) {
+  vertices.resize(3 * models.size());
+  std::vector<Triangle> triangles(models.size());
+  for (std::size_t t = 0; t < models.size(); ++t) {
+    triangles[t].identity = models[t].identity;
+    triangles[t].surface = Surface::kModel;
+    for (std::size_t k = 0; k < 3; ++k) {
+      vertices[3 * t + k].position = models[t].position[k];
+      vertices[3 * t + k].color = models[t].color[k];
+      triangles[t].vertex[k] = &vertices[3 * t + k];
+    }
+  }
+  return triangles;
 }
 
 Result<Picture> renderInArena(const Database& database, const RenderOptions& options,
@@ -287,6 +307,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     nodes.insert(nodes.end(), of_grid.begin(), of_grid.end());
   }
   statistics.nodes.visited = statistics.nodes.drawn = nodes.size();
+  DELTAZ_TRY_ASSIGN(const PoseTable poses, PoseTable::of(database, options.poses));
   statistics.milliseconds.schedule = watch.lap();
 
   std::vector<std::optional<Result<TerrainTile>>> tiles(nodes.size());
@@ -297,6 +318,8 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     statistics.posts_decoded +=
         static_cast<std::uint64_t>(tile->value().columns) * static_cast<std::uint64_t>(tile->value().rows);
   }
+  DELTAZ_TRY_ASSIGN(const std::vector<ReferenceModelTriangle> models,
+                    referenceModels(database, poses, environment, statistics));
   statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read = watch.lap();
 
@@ -315,17 +338,20 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     of_seams.push_back(seamVertices(seam, posts));
     addSeamTriangles(seam, of_seams.back(), posts, database, nodes, triangles, of_node);
   }
+  std::vector<Vertex> of_models;
+  triangles.push_back(modelTriangles(models, of_models));
+  of_node.emplace_back();  // models have counted theirs
   statistics.milliseconds.objects = watch.lap();
 
   // Bands of rows do not touch each other's samples; each sees all triangles in the same order.
   constexpr int kBands = 8;
   std::vector<Sample> samples(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
-  std::vector<std::vector<std::uint8_t>> covers(nodes.size());
-  for (std::size_t n = 0; n < nodes.size(); ++n) covers[n].assign(triangles[n].size(), 0);
+  std::vector<std::vector<std::uint8_t>> covers(triangles.size());
+  for (std::size_t n = 0; n < triangles.size(); ++n) covers[n].assign(triangles[n].size(), 0);
   std::vector<FrameStatistics::Samples> of_band(kBands);
   tbb::parallel_for(0, kBands, [&](int band) {
     const int first_i = view.height * band / kBands, last_i = view.height * (band + 1) / kBands - 1;
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
       for (std::size_t t = 0; t < triangles[n].size(); ++t) {
         const Box box = boxOf(triangles[n][t], view);
         if (box.last_i < first_i || box.first_i > last_i) continue;
@@ -339,7 +365,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     statistics.samples.tested += counts.tested;
     statistics.samples.written += counts.written;
   }
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
     statistics.triangles.in += of_node[n].in;
     statistics.triangles.back_facing += of_node[n].back_facing;
     for (std::size_t t = 0; t < triangles[n].size(); ++t) {

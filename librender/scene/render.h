@@ -56,6 +56,11 @@ struct FrameStatistics {
   struct Nodes {
     std::uint64_t visited = 0, out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, drawn = 0;
   } nodes;
+  // Placed models: those read from the file, those of them that no part of shows in the picture, and those
+  // drawn, part or whole. A page of placements that is out of view is not read.
+  struct Models {
+    std::uint64_t visited = 0, out_of_view = 0, drawn = 0;  // visited = out_of_view + drawn
+  } models;
   struct Triangles {
     std::uint64_t in = 0, back_facing = 0, clipped = 0, no_sample = 0, drawn = 0;  // in = sum of the others
   } triangles;
