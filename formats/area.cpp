@@ -490,7 +490,11 @@ std::string serializeArea(const AreaHeader& area) {
   json["version"] = kAreaVersion;
   json["required_features"] = Json::array();
   if (!area.color_maps.empty()) json["required_features"].push_back(kColorFeature);
-  if (!area.models.empty()) json["required_features"].push_back(kModelFeature);
+  // The list of placements outlives the last model, since it knows which numbers were given.
+  const bool placed = std::any_of(area.files.begin(), area.files.end(), [](const FileReference& file) {
+    return file.role == FileRole::kPlacements;
+  });
+  if (!area.models.empty() || placed) json["required_features"].push_back(kModelFeature);
   json["optional_features"] = Json::array();
   json["generation"] = area.generation;
   json["bounds"] = {{"west", area.west}, {"south", area.south}, {"east", area.east}, {"north", area.north}};
