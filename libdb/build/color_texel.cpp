@@ -1,0 +1,41 @@
+#include "libdb/build/color_texel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libdb/access/color.h"
+
+namespace deltaz {
+
+double linearOfCode(std::uint8_t code) {
+  static const std::array<double, 256> table = [] {
+    std::array<double, 256> values{};
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = decodeSrgb(static_cast<std::uint8_t>(k));
+    return values;
+  }();
+  return table[code];
+}
+
+Texel storedTexel(const CoveredColor& color) {
+  const double cover = std::clamp(color.cover, 0.0, 1.0);
+  const auto code = static_cast<std::uint8_t>(std::floor(cover * 255 + 0.5));
+  if (code == 0) return {};
+  return {encodeSrgb(color.red / color.cover), encodeSrgb(color.green / color.cover),
+          encodeSrgb(color.blue / color.cover), code};
+}
+
+Texel meanTexel(const Texel& sw, const Texel& se, const Texel& nw, const Texel& ne) {
+  const unsigned total = unsigned{sw[3]} + se[3] + nw[3] + ne[3];
+  const unsigned cover = (total + 2) / 4;
+  if (cover == 0) return {};
+  Texel mean{0, 0, 0, static_cast<std::uint8_t>(cover)};
+  for (std::size_t band = 0; band < 3; ++band) {
+    // Equal codes stay themselves, whatever the rounding of the sums.
+    double sum = 0;
+    for (const Texel* texel : {&sw, &se, &nw, &ne}) sum += (*texel)[3] * linearOfCode((*texel)[band]);
+    mean[band] = encodeSrgb(sum / total);
+  }
+  return mean;
+}
+
+}  // namespace deltaz
