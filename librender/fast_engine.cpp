@@ -20,6 +20,7 @@
 #include "librender/scene/pose_table.h"
 #include "librender/scene/scheduler.h"
 #include "librender/scene/stopwatch.h"
+#include "librender/scene/texture_store.h"
 
 namespace deltaz {
 namespace {
@@ -69,7 +70,6 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
       statistics.posts_decoded +=
           static_cast<std::uint64_t>(tile->columns) * static_cast<std::uint64_t>(tile->rows);
   }
-  statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read = watch.lap();
 
   std::vector<TerrainVertices> vertices(cut.size());
@@ -80,7 +80,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
         terrainVertices(*tiles[n], database.grid(tiles[n]->grid), environment.view, environment.light);
     processed[n] = {&*tiles[n], &vertices[n]};
   });
-  const BorderStitcher stitcher(database, cut, index, seams, processed);
+  const BorderStitcher stitcher(database, cut, index, seams, processed, environment.color_map != nullptr);
   const Pretiler pretiler(environment.view);
   // Nodes of the terrain, then parts of models.
   std::vector<PretiledNode> pretiled(cut.size() + models.parts.size());
@@ -92,6 +92,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     TerrainFaces faces = terrainFaces(*tiles[n], stitched.position, splits, seams.replacedFaces(*tiles[n]));
     for (const TerrainFace& face : stitcher.seamFaces(static_cast<std::uint32_t>(n), stitched))
       addFace(faces, stitched.position, face);
+    pretiled[n].grid = cut[n].node.record.grid;
     pretiler.process(stitched, faces, cut[n].node.number, pretiled[n]);
     of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
   });
@@ -118,8 +119,18 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   statistics.samples.written = tiled.written;
   statistics.milliseconds.raster = watch.lap();
 
+  // What is seen is settled, so only the colours that are seen are read.
+  TextureStore textures;
+  if (environment.color_map != nullptr) {
+    DELTAZ_TRY_ASSIGN(
+        textures, TextureStore::read(*environment.color_map, visibleSquares(environment, pretiled, buffer)));
+  }
+  statistics.color_tiles = textures.tileCount();
+  statistics.bytes_read = database.bytesRead() - bytes_before;
+  statistics.milliseconds.read += watch.lap();
+
   Picture picture = makePicture(options);
-  const ResolverStatistics resolved = resolve(environment, pretiled, buffer, picture);
+  const ResolverStatistics resolved = resolve(environment, pretiled, buffer, textures, picture);
   statistics.samples.shaded = resolved.shaded;
   statistics.depth_complexity =
       resolved.covered > 0 ? static_cast<double>(tiled.tested) / static_cast<double>(resolved.covered) : 0;

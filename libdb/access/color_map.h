@@ -29,6 +29,8 @@ class ColorMap {
   static Result<ColorMap> open(std::unique_ptr<ContainerReader> file, const std::vector<GridHeader>& grids);
 
   const ColorDirectory& directory() const { return directory_; }
+  // Cells along the side of a node of level 0. Pre: the area has the grid.
+  int leafCells(std::uint16_t grid) const { return leaf_cells_[grid]; }
   // Nothing if the map has no texels over this grid.
   const ColorTree* treeOf(std::uint16_t grid) const;
 

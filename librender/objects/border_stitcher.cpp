@@ -1,8 +1,10 @@
 #include "librender/objects/border_stitcher.h"
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 
+#include "libdb/access/grid_locator.h"
 #include "libdb/access/seam_geometry.h"
 
 namespace deltaz {
@@ -144,8 +146,13 @@ std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::ve
 
 BorderStitcher::BorderStitcher(const Database& database, const std::vector<CutNode>& cut,
                                const CutIndex& index, const SeamIndex& seams,
-                               const std::vector<ProcessedNode>& processed)
-    : database_(database), cut_(cut), index_(index), seams_(seams), processed_(processed) {}
+                               const std::vector<ProcessedNode>& processed, bool textured)
+    : database_(database),
+      cut_(cut),
+      index_(index),
+      seams_(seams),
+      processed_(processed),
+      textured_(textured) {}
 
 // Whether coarser node `node` draws a face on the edge of its border that the post lies inside of.
 bool BorderStitcher::drawsFaceOnEdge(std::uint32_t node, std::int64_t column, std::int64_t row) const {
@@ -161,8 +168,8 @@ bool BorderStitcher::drawsFaceOnEdge(std::uint32_t node, std::int64_t column, st
   return edge >= 0 && edge + 1 < border.count(side) && faceOnEdge(*tile, side, static_cast<int>(edge));
 }
 
-std::optional<BorderStitcher::Resolved> BorderStitcher::resolve(std::uint16_t grid, std::int64_t column,
-                                                                std::int64_t row) const {
+std::optional<TerrainVertex> BorderStitcher::resolve(std::uint16_t grid, std::int64_t column,
+                                                     std::int64_t row) const {
   const Touching around = touching(index_, grid, column, row);
   const auto is_post = [&](std::int64_t step) { return column % step == 0 && row % step == 0; };
   std::uint32_t mover = CutIndex::kNone, owner = CutIndex::kNone;
@@ -185,7 +192,7 @@ std::optional<BorderStitcher::Resolved> BorderStitcher::resolve(std::uint16_t gr
     const auto to = along_x ? resolve(grid, begin + step, row) : resolve(grid, column, begin + step);
     if (from && to) {
       const double t = static_cast<double>(at - begin) / static_cast<double>(step);
-      return Resolved{from->position + (to->position - from->position) * t, mix(from->color, to->color, t)};
+      return from->moved(*from, *to, t);
     }
   }
   if (owner == CutIndex::kNone) return std::nullopt;
@@ -193,8 +200,7 @@ std::optional<BorderStitcher::Resolved> BorderStitcher::resolve(std::uint16_t gr
   const std::int64_t step = std::int64_t{1} << tile.level;
   const std::int64_t i = column / step - tile.first_column, j = row / step - tile.first_row;
   if (i < 0 || j < 0 || i >= tile.columns || j >= tile.rows) return std::nullopt;
-  const auto vertex = static_cast<std::size_t>(j * tile.columns + i);
-  return Resolved{processed_[owner].vertices->position[vertex], processed_[owner].vertices->color[vertex]};
+  return processed_[owner].vertices->at(static_cast<std::size_t>(j * tile.columns + i));
 }
 
 TerrainVertices BorderStitcher::vertices(std::uint32_t n, TerrainSplits& splits,
@@ -218,10 +224,8 @@ TerrainVertices BorderStitcher::vertices(std::uint32_t n, TerrainSplits& splits,
   // What coarser neighbours move, and corners, which may belong to a coarser node that only touches there.
   const auto take = [&](Side side, int k) {
     const std::array<std::int64_t, 2> post = border.post(side, border.begin(side) + k * extent.step);
-    if (const auto resolved = resolve(record.grid, post[0], post[1])) {
-      result.position[border.vertex(side, k)] = resolved->position;
-      result.color[border.vertex(side, k)] = resolved->color;
-    }
+    if (const auto resolved = resolve(record.grid, post[0], post[1]))
+      result.set(border.vertex(side, k), *resolved);
   };
   std::array<bool, 4> finer_across{};
   for (const Side side : kSides) {
@@ -254,19 +258,19 @@ TerrainVertices BorderStitcher::vertices(std::uint32_t n, TerrainSplits& splits,
       const std::int64_t offset = along - begin;
       const auto edge = static_cast<int>(offset / extent.step);
       if (offset % extent.step == 0 || !faceOnEdge(tile, side, edge)) continue;
-      const std::uint32_t from = border.vertex(side, edge), to = border.vertex(side, edge + 1);
+      const TerrainVertex from = result.at(border.vertex(side, edge));
+      const TerrainVertex to = result.at(border.vertex(side, edge + 1));
       const double t = static_cast<double>(offset % extent.step) / static_cast<double>(extent.step);
       of_side[static_cast<std::size_t>(edge)].push_back(static_cast<std::uint32_t>(result.position.size()));
-      result.position.push_back(result.position[from] + (result.position[to] - result.position[from]) * t);
-      result.color.push_back(mix(result.color[from], result.color[to], t));
+      result.append(from.moved(from, to, t));
       if (posts != nullptr) posts->push_back(border.post(side, along));
     }
   }
   return result;
 }
 
-std::optional<BorderStitcher::Resolved> BorderStitcher::ownPost(std::uint16_t grid, std::int64_t column,
-                                                                std::int64_t row) const {
+std::optional<TerrainVertex> BorderStitcher::ownPost(std::uint16_t grid, std::int64_t column,
+                                                     std::int64_t row) const {
   const Touching around = touching(index_, grid, column, row);
   for (int k = 0; k < around.count; ++k) {
     const std::uint32_t n = around.node[static_cast<std::size_t>(k)];
@@ -274,26 +278,40 @@ std::optional<BorderStitcher::Resolved> BorderStitcher::ownPost(std::uint16_t gr
     if (tile == nullptr || tile->level != 0) continue;
     const std::int64_t i = column - tile->first_column, j = row - tile->first_row;
     if (i < 0 || j < 0 || i >= tile->columns || j >= tile->rows) continue;
-    const auto vertex = static_cast<std::size_t>(j * tile->columns + i);
-    return Resolved{processed_[n].vertices->position[vertex], processed_[n].vertices->color[vertex]};
+    return processed_[n].vertices->at(static_cast<std::size_t>(j * tile->columns + i));
   }
   return std::nullopt;
 }
 
-std::optional<BorderStitcher::Resolved> BorderStitcher::seamVertex(const Seam& seam,
-                                                                   const SeamVertex& vertex) const {
+GridCoordinates BorderStitcher::textureIn(std::uint16_t drawing, std::uint16_t grid, std::int64_t column,
+                                          std::int64_t row) const {
+  if (drawing == grid) return {static_cast<double>(column), static_cast<double>(row)};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (!textured_) return {kUnknown, kUnknown};
+  const auto place = GridLocator(database_.grid(drawing)).locatePost(database_.grid(grid), column, row);
+  if (!place) return {kUnknown, kUnknown};
+  return {static_cast<double>(place->column) + place->x, static_cast<double>(place->row) + place->y};
+}
+
+std::optional<TerrainVertex> BorderStitcher::seamVertex(const Seam& seam, const SeamVertex& vertex,
+                                                        std::uint16_t drawing) const {
   const std::uint16_t grid = gridOf(seam, vertex.side);
+  const auto placed = [&](std::optional<TerrainVertex> post, std::int64_t column, std::int64_t row) {
+    if (post) post->texture = textureIn(drawing, grid, column, row);
+    return post;
+  };
   // A post may lie on a border with a coarser node, too; a point between posts never does.
-  if (vertex.weight1 == 0 && vertex.weight2 == 0) return resolve(grid, vertex.column, vertex.row);
-  const auto p0 = ownPost(grid, vertex.column, vertex.row);
+  if (vertex.weight1 == 0 && vertex.weight2 == 0)
+    return placed(resolve(grid, vertex.column, vertex.row), vertex.column, vertex.row);
+  const auto p0 = placed(ownPost(grid, vertex.column, vertex.row), vertex.column, vertex.row);
   if (!p0) return std::nullopt;
-  Resolved result = *p0;
+  TerrainVertex result = *p0;
   const auto lean = [&](const std::array<std::int8_t, 2>& step, double weight) {
     if (weight == 0) return true;
-    const auto to = ownPost(grid, vertex.column + step[0], vertex.row + step[1]);
+    const std::int64_t column = vertex.column + step[0], row = vertex.row + step[1];
+    const auto to = placed(ownPost(grid, column, row), column, row);
     if (!to) return false;
-    result.position = result.position + (to->position - p0->position) * weight;
-    result.color = result.color + (to->color + p0->color * -1) * weight;
+    result = result.moved(*p0, *to, weight);
     return true;
   };
   if (!lean(vertex.to_p1, vertex.weight1) || !lean(vertex.to_p2, vertex.weight2)) return std::nullopt;
@@ -312,10 +330,9 @@ std::vector<TerrainFace> BorderStitcher::seamFaces(std::uint32_t n, TerrainVerti
     const auto [found, fresh] = placed.emplace(std::uint64_t{seam} << 32 | vertex, std::nullopt);
     if (!fresh) return found->second;
     const Seam& of = seams_.seams()[seam];
-    if (const auto resolved = seamVertex(of, of.vertices[vertex])) {
+    if (const auto resolved = seamVertex(of, of.vertices[vertex], record.grid)) {
       found->second = static_cast<std::uint32_t>(vertices.position.size());
-      vertices.position.push_back(resolved->position);
-      vertices.color.push_back(resolved->color);
+      vertices.append(*resolved);
       if (names != nullptr) names->push_back({seam, vertex});
     }
     return found->second;

@@ -42,8 +42,9 @@ std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::ve
 class BorderStitcher {
  public:
   // All arguments are referred to and must live as long. `processed` has one entry for each node of the cut.
+  // `textured`: vertices that seams bring from another grid are given their texture coordinates, too.
   BorderStitcher(const Database& database, const std::vector<CutNode>& cut, const CutIndex& index,
-                 const SeamIndex& seams, const std::vector<ProcessedNode>& processed);
+                 const SeamIndex& seams, const std::vector<ProcessedNode>& processed, bool textured = false);
 
   // The vertices of node `n` with its border resolved, and behind its posts the points that split its faces.
   // `posts`, if given, becomes the level-0 index (column, row) of each vertex, which a split point has, too.
@@ -59,15 +60,16 @@ class BorderStitcher {
                                      std::vector<SeamVertexName>* names = nullptr) const;
 
  private:
-  struct Resolved {
-    Vector3 position;
-    LinearColor color;
-  };
   // Nothing if no processed node has the post.
-  std::optional<Resolved> resolve(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
-  std::optional<Resolved> seamVertex(const Seam& seam, const SeamVertex& vertex) const;
+  std::optional<TerrainVertex> resolve(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
+  // With texture coordinates in grid `drawing`.
+  std::optional<TerrainVertex> seamVertex(const Seam& seam, const SeamVertex& vertex,
+                                          std::uint16_t drawing) const;
   // A post as the object processor placed it.
-  std::optional<Resolved> ownPost(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
+  std::optional<TerrainVertex> ownPost(std::uint16_t grid, std::int64_t column, std::int64_t row) const;
+  // Where a post of grid `grid` lies in grid `drawing`.
+  GridCoordinates textureIn(std::uint16_t drawing, std::uint16_t grid, std::int64_t column,
+                            std::int64_t row) const;
   bool drawsFaceOnEdge(std::uint32_t node, std::int64_t column, std::int64_t row) const;
 
   const Database& database_;
@@ -75,6 +77,7 @@ class BorderStitcher {
   const CutIndex& index_;
   const SeamIndex& seams_;
   const std::vector<ProcessedNode>& processed_;
+  bool textured_;
 };
 
 }  // namespace deltaz

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
-#include "libdb/access/vertex_normals.h"
 #include "libdb/access/synthetic_color.h"
+#include "libdb/access/vertex_normals.h"
 
 namespace deltaz {
 namespace {
@@ -69,17 +70,17 @@ std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometr
   return position;
 }
 
-std::vector<LinearColor> terrainColors(const TerrainTile& tile, const GridGeometry& geometry,
-                                       const Light& light) {
+TerrainShading terrainShading(const TerrainTile& tile, const GridGeometry& geometry, const Light& light) {
   const std::vector<Vector3> normals = vertexNormals(tile, geometry);
   const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
-  std::vector<LinearColor> color;
-  color.reserve(normals.size());
+  TerrainShading shading;
+  shading.color.reserve(normals.size());
+  shading.intensity.reserve(normals.size());
   SurfacePoint point;
   for (int j = 0; j < tile.rows; ++j) {
     for (int i = 0; i < tile.columns; ++i) {
-      const Vector3& normal = normals[color.size()];
-      const Vector3& up = places[color.size()].up;
+      const Vector3& normal = normals[shading.color.size()];
+      const Vector3& up = places[shading.color.size()].up;
       const double across = std::hypot(up.x, up.y);
       // On a geodetic grid a row has one latitude.
       if (i == 0 || !geometry.isGeodetic()) {
@@ -94,16 +95,53 @@ std::vector<LinearColor> terrainColors(const TerrainTile& tile, const GridGeomet
       point.height = geometry.metres(tile.height(i, j));
       point.upness = dot(normal, up);
       point.poleward = (up.z < 0 ? -1 : 1) * dot(normal, north);
-      color.push_back(naturalColor(point) * light.intensity(normal));
+      const double intensity = light.intensity(normal);
+      shading.intensity.push_back(intensity);
+      shading.color.push_back(naturalColor(point) * intensity);
     }
   }
-  return color;
+  return shading;
 }
 
 TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
                                 const ViewTransform& view, const Light& light) {
-  return {tile.columns, tile.rows, terrainPositions(tile, geometry, view),
-          terrainColors(tile, geometry, light)};
+  TerrainShading shading = terrainShading(tile, geometry, light);
+  TerrainVertices vertices;
+  vertices.columns = tile.columns;
+  vertices.rows = tile.rows;
+  vertices.position = terrainPositions(tile, geometry, view);
+  vertices.color = std::move(shading.color);
+  vertices.intensity = std::move(shading.intensity);
+  vertices.texture.reserve(vertices.position.size());
+  const std::int64_t step = std::int64_t{1} << tile.level;
+  for (int j = 0; j < tile.rows; ++j) {
+    const auto row = static_cast<double>((tile.first_row + j) * step);
+    for (int i = 0; i < tile.columns; ++i)
+      vertices.texture.push_back({static_cast<double>((tile.first_column + i) * step), row});
+  }
+  return vertices;
+}
+
+TerrainVertex TerrainVertex::moved(const TerrainVertex& from, const TerrainVertex& to, double weight) const {
+  return {position + (to.position - from.position) * weight,
+          color + (to.color + from.color * -1) * weight,
+          intensity + (to.intensity - from.intensity) * weight,
+          {texture.column + (to.texture.column - from.texture.column) * weight,
+           texture.row + (to.texture.row - from.texture.row) * weight}};
+}
+
+void TerrainVertices::set(std::size_t index, const TerrainVertex& vertex) {
+  position[index] = vertex.position;
+  color[index] = vertex.color;
+  intensity[index] = vertex.intensity;
+  texture[index] = vertex.texture;
+}
+
+void TerrainVertices::append(const TerrainVertex& vertex) {
+  position.push_back(vertex.position);
+  color.push_back(vertex.color);
+  intensity.push_back(vertex.intensity);
+  texture.push_back(vertex.texture);
 }
 
 namespace {

@@ -10,24 +10,49 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "libdb/access/color.h"
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/terrain_tile.h"
 #include "libdb/access/vector3.h"
 #include "librender/scene/camera.h"
-#include "libdb/access/color.h"
 #include "librender/scene/illumination.h"
 
 namespace deltaz {
 
+// A place in a grid, in level-0 posts counted from global index 0: what colour maps are addressed by.
+struct GridCoordinates {
+  double column = 0, row = 0;
+};
+
+// All that is interpolated over a face.
+struct TerrainVertex {
+  Vector3 position;         // (U, V, W)
+  LinearColor color;        // illumination times synthetic colour, linear
+  double intensity = 0;     // illumination: what a texel's colour is multiplied by
+  GridCoordinates texture;  // in the grid of the node that draws the face
+
+  // The vertex moved by `weight` of the way from `from` to `to`.
+  TerrainVertex moved(const TerrainVertex& from, const TerrainVertex& to, double weight) const;
+};
+
 // Posts row by row from the south-west, columns * rows of them, then points that split border faces; what
-// stands at a void post is not used by any face.
+// stands at a void post is not used by any face. The lists have one entry a vertex, as of TerrainVertex.
 struct TerrainVertices {
   int columns = 0, rows = 0;
-  std::vector<Vector3> position;   // (U, V, W)
-  std::vector<LinearColor> color;  // illumination times synthetic colour, linear
+  std::vector<Vector3> position;
+  std::vector<LinearColor> color;
+  std::vector<double> intensity;
+  std::vector<GridCoordinates> texture;
+
+  TerrainVertex at(std::size_t index) const {
+    return {position[index], color[index], intensity[index], texture[index]};
+  }
+  void set(std::size_t index, const TerrainVertex& vertex);
+  void append(const TerrainVertex& vertex);
 };
 
 // A face by the indices of its posts, in the order of the report (counter-clockwise seen from above).
@@ -43,8 +68,12 @@ struct TerrainFaces {
 
 std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
                                       const ViewTransform& view);
-std::vector<LinearColor> terrainColors(const TerrainTile& tile, const GridGeometry& geometry,
-                                       const Light& light);
+// Illumination of each post, and that times its synthetic colour.
+struct TerrainShading {
+  std::vector<LinearColor> color;
+  std::vector<double> intensity;
+};
+TerrainShading terrainShading(const TerrainTile& tile, const GridGeometry& geometry, const Light& light);
 TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
                                 const ViewTransform& view, const Light& light);
 

@@ -135,7 +135,15 @@ std::array<float, 3> toFloats(const LinearColor& color) {
 
 void setAttributes(const TerrainVertices& vertices, const TerrainFace& face, std::uint32_t record,
                    FacePlanes& planes) {
-  for (std::size_t k = 0; k < 3; ++k) planes.color[k] = toFloats(vertices.color[face.vertex[k]]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    planes.color[k] = toFloats(vertices.color[face.vertex[k]]);
+    planes.intensity[k] = static_cast<float>(vertices.intensity[face.vertex[k]]);
+  }
+  planes.texture = vertices.texture[face.vertex[0]];
+  for (std::size_t k = 0; k < 2; ++k) {
+    const GridCoordinates& to = vertices.texture[face.vertex[k + 1]];
+    planes.texture_steps[k] = {to.column - planes.texture.column, to.row - planes.texture.row};
+  }
   planes.identity = std::uint64_t{record} << 32 | face.identity;
 }
 

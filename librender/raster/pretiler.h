@@ -53,8 +53,11 @@ struct FacePlanes {
   ScreenPlane inverse_u;
   ScreenPlane weight1, weight2;    // of the face's second and third vertex, times 1/U
   double least = 0, greatest = 0;  // 1/U over the vertices of what is in front of the hither plane
-  std::array<std::array<float, 3>, 3> color{};  // of each vertex: red, green, blue, linear, lit
-  std::uint64_t identity = 0;                   // as Picture::triangle
+  std::array<std::array<float, 3>, 3> color{};     // of each vertex: red, green, blue, linear, lit
+  std::array<float, 3> intensity{};                // of each vertex
+  GridCoordinates texture;                         // of the first vertex; see texture_planes.h
+  std::array<GridCoordinates, 2> texture_steps{};  // from there to the second and third
+  std::uint64_t identity = 0;                      // as Picture::triangle
   Surface surface = Surface::kTerrain;
 
   // 1/U at a sample. Within the vertices' range, so that slivers, whose samples may lie just outside the
@@ -67,6 +70,7 @@ struct FacePlanes {
 
 // What comes of one terrain node, or of one part of a model.
 struct PretiledNode {
+  std::uint16_t grid = 0;  // whose colours its faces show
   std::vector<FacePlanes> faces;
   std::vector<SnappedTriangle> triangles;
   std::uint64_t clipped = 0, no_sample = 0;  // faces that left nothing: outside the picture, between samples
@@ -76,7 +80,8 @@ class Pretiler {
  public:
   explicit Pretiler(const ViewTransform& view);
 
-  // Appends the node's front faces to `out` in their order. `record` is the node's record number.
+  // Appends the node's front faces to `out` in their order, and leaves out.grid as it is. `record` is the
+  // node's record number.
   void process(const TerrainVertices& vertices, const TerrainFaces& faces, std::uint32_t record,
                PretiledNode& out) const;
   // The same for the front faces of a part of the model that stands as `instance`.

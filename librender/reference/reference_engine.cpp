@@ -11,8 +11,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "libdb/access/grid_locator.h"
+#include "libdb/access/seam_geometry.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/reference/reference_models.h"
+#include "librender/reference/reference_texture.h"
 #include "librender/scene/arena.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/seam_index.h"
@@ -25,10 +28,13 @@ namespace {
 struct Vertex {
   Vector3 position;  // view space
   LinearColor color;
+  double intensity = 0;
+  GridCoordinates texture;
 };
 
 struct Triangle {
   std::array<const Vertex*, 3> vertex{};
+  std::uint16_t grid = 0;
   std::uint64_t identity = 0;
   Surface surface = Surface::kTerrain;
 };
@@ -37,6 +43,9 @@ struct Triangle {
 struct Sample {
   double inverse_u = 0;
   LinearColor color;
+  double intensity = 0;
+  std::uint16_t grid = 0;
+  ReferenceFootprint texture;
   std::uint64_t identity = 0;
   Surface surface = Surface::kTerrain;
 };
@@ -57,14 +66,19 @@ Vector3 positionOf(const GridGeometry& geometry, const TerrainTile& tile, int i,
 
 std::vector<Vertex> verticesOf(const TerrainTile& tile, const GridGeometry& geometry,
                                const Environment& environment) {
-  const std::vector<LinearColor> colors = terrainColors(tile, geometry, environment.light);
+  const TerrainShading shading = terrainShading(tile, geometry, environment.light);
+  const std::int64_t step = std::int64_t{1} << tile.level;
   std::vector<Vertex> vertices;
-  vertices.reserve(colors.size());
+  vertices.reserve(shading.color.size());
   for (int j = 0; j < tile.rows; ++j) {
     for (int i = 0; i < tile.columns; ++i) {
       const double height = geometry.metres(tile.height(i, j));
-      vertices.push_back(
-          {environment.view.toView(positionOf(geometry, tile, i, j, height)), colors[vertices.size()]});
+      const std::size_t post = vertices.size();
+      vertices.push_back({environment.view.toView(positionOf(geometry, tile, i, j, height)),
+                          shading.color[post],
+                          shading.intensity[post],
+                          {static_cast<double>((tile.first_column + i) * step),
+                           static_cast<double>((tile.first_row + j) * step)}});
     }
   }
   return vertices;
@@ -72,20 +86,21 @@ std::vector<Vertex> verticesOf(const TerrainTile& tile, const GridGeometry& geom
 
 // Appends the triangle unless it is turned away from the eye.
 void addTriangle(std::vector<Triangle>& triangles, FrameStatistics::Triangles& counts, const Vertex& a,
-                 const Vertex& b, const Vertex& c, std::uint64_t identity) {
+                 const Vertex& b, const Vertex& c, std::uint16_t grid, std::uint64_t identity) {
   ++counts.in;
   const Vector3 normal = cross(b.position - a.position, c.position - a.position);
   if (dot(normal, a.position) >= 0) {
     ++counts.back_facing;
     return;
   }
-  triangles.push_back({{&a, &b, &c}, identity, Surface::kTerrain});
+  triangles.push_back({{&a, &b, &c}, grid, identity, Surface::kTerrain});
 }
 
 // The valid faces of a tile that are not turned away from the eye and that no seam has replaced.
 std::vector<Triangle> trianglesOf(const TerrainTile& tile, const std::vector<Vertex>& vertices,
                                   std::uint32_t record, const std::vector<std::uint8_t>& replaced,
                                   FrameStatistics::Triangles& counts) {
+  const auto grid = static_cast<std::uint16_t>(tile.grid);
   std::vector<Triangle> triangles;
   for (int j = 0; j + 1 < tile.rows; ++j) {
     for (int i = 0; i + 1 < tile.columns; ++i) {
@@ -98,9 +113,9 @@ std::vector<Triangle> trianglesOf(const TerrainTile& tile, const std::vector<Ver
                static_cast<std::size_t>(i));
       const auto identity = std::uint64_t{record} << 32 | bottom;
       if (tile.bottomFaceValid(i, j) && (replaced.empty() || replaced[bottom] == 0))
-        addTriangle(triangles, counts, post(0, 0), post(1, 0), post(1, 1), identity);
+        addTriangle(triangles, counts, post(0, 0), post(1, 0), post(1, 1), grid, identity);
       if (tile.topFaceValid(i, j) && (replaced.empty() || replaced[bottom + 1] == 0))
-        addTriangle(triangles, counts, post(0, 0), post(1, 1), post(0, 1), identity | 1);
+        addTriangle(triangles, counts, post(0, 0), post(1, 1), post(0, 1), grid, identity | 1);
     }
   }
   return triangles;
@@ -142,17 +157,32 @@ class AllPosts {
   std::unordered_map<NodePosition, std::size_t, NodePositionHash> leaves_;
 };
 
-std::vector<Vertex> seamVertices(const Seam& seam, const AllPosts& posts) {
+// With texture coordinates in grid `drawing`.
+std::vector<Vertex> seamVertices(const Seam& seam, const AllPosts& posts, const Database& database,
+                                 std::uint16_t drawing) {
+  const GridLocator locator(database.grid(drawing));
   std::vector<Vertex> vertices;
   for (const SeamVertex& vertex : seam.vertices) {
     const std::uint16_t grid = vertex.side == SeamSide::kUpper ? seam.upper : seam.lower;
-    const Vertex& p0 = posts.post(grid, vertex.column, vertex.row);
+    const auto post = [&](std::int64_t column, std::int64_t row) {
+      Vertex result = posts.post(grid, column, row);
+      if (grid == drawing) return result;
+      const auto place = locator.locatePost(database.grid(grid), column, row);
+      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+      result.texture = {place ? static_cast<double>(place->column) + place->x : kUnknown,
+                        place ? static_cast<double>(place->row) + place->y : kUnknown};
+      return result;
+    };
+    const Vertex p0 = post(vertex.column, vertex.row);
     Vertex sum = p0;
     const auto lean = [&](const std::array<std::int8_t, 2>& step, double weight) {
       if (weight == 0) return;
-      const Vertex& p = posts.post(grid, vertex.column + step[0], vertex.row + step[1]);
+      const Vertex p = post(vertex.column + step[0], vertex.row + step[1]);
       sum.position = sum.position + (p.position - p0.position) * weight;
       sum.color = sum.color + (p.color + p0.color * -1) * weight;
+      sum.intensity += (p.intensity - p0.intensity) * weight;
+      sum.texture.column += (p.texture.column - p0.texture.column) * weight;
+      sum.texture.row += (p.texture.row - p0.texture.row) * weight;
     };
     lean(vertex.to_p1, vertex.weight1);
     lean(vertex.to_p2, vertex.weight2);
@@ -161,27 +191,24 @@ std::vector<Vertex> seamVertices(const Seam& seam, const AllPosts& posts) {
   return vertices;
 }
 
-// What seams draw in the place of leaves' own faces, added to those leaves' triangles.
-void addSeamTriangles(const Seam& seam, const std::vector<Vertex>& vertices, const AllPosts& posts,
-                      const Database& database, const std::vector<Node>& nodes,
+// What a seam draws in the place of one grid's own faces, added to the triangles of its leaves.
+void addSeamTriangles(const Seam& seam, SeamSide side, const std::vector<Vertex>& vertices,
+                      const AllPosts& posts, const Database& database, const std::vector<Node>& nodes,
                       std::vector<std::vector<Triangle>>& triangles,
                       std::vector<FrameStatistics::Triangles>& counts) {
-  for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
-    const std::uint16_t grid = side == SeamSide::kUpper ? seam.upper : seam.lower;
-    const GridGeometry& geometry = database.grid(grid);
-    for (const ReplacedFace& replaced : seam.replacedOf(side)) {
-      const std::size_t n = posts.leaf(grid, replaced.column, replaced.row);
-      const PostRange columns = geometry.nodePosts(geometry.columnsAt(0), nodes[n].record.x);
-      const PostRange rows = geometry.nodePosts(geometry.rowsAt(0), nodes[n].record.y);
-      const auto cell = static_cast<std::uint64_t>((replaced.row - rows.begin) * (columns.size() - 1) +
-                                                   (replaced.column - columns.begin));
-      const std::uint64_t identity =
-          std::uint64_t{nodes[n].number} << 32 | cell << 1 | (replaced.top ? 1 : 0);
-      for (std::uint32_t f = 0; f < replaced.face_count; ++f) {
-        const auto& face = seam.faces[replaced.first_face + f];
-        addTriangle(triangles[n], counts[n], vertices[face[0]], vertices[face[1]], vertices[face[2]],
-                    identity);
-      }
+  const std::uint16_t grid = gridOf(seam, side);
+  const GridGeometry& geometry = database.grid(grid);
+  for (const ReplacedFace& replaced : seam.replacedOf(side)) {
+    const std::size_t n = posts.leaf(grid, replaced.column, replaced.row);
+    const PostRange columns = geometry.nodePosts(geometry.columnsAt(0), nodes[n].record.x);
+    const PostRange rows = geometry.nodePosts(geometry.rowsAt(0), nodes[n].record.y);
+    const auto cell = static_cast<std::uint64_t>((replaced.row - rows.begin) * (columns.size() - 1) +
+                                                 (replaced.column - columns.begin));
+    const std::uint64_t identity = std::uint64_t{nodes[n].number} << 32 | cell << 1 | (replaced.top ? 1 : 0);
+    for (std::uint32_t f = 0; f < replaced.face_count; ++f) {
+      const auto& face = seam.faces[replaced.first_face + f];
+      addTriangle(triangles[n], counts[n], vertices[face[0]], vertices[face[1]], vertices[face[2]], grid,
+                  identity);
     }
   }
 }
@@ -240,18 +267,25 @@ bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, i
                                static_cast<std::size_t>(j)];
       if (inverse_u <= sample.inverse_u) continue;
       ++counts.written;
-      sample = {inverse_u,
-                triangle.vertex[0]->color * (weight_a / sum) + triangle.vertex[1]->color * (weight_b / sum) +
-                    triangle.vertex[2]->color * (weight_c / sum),
-                triangle.identity, triangle.surface};
+      const auto& [first, second, third] = triangle.vertex;
+      sample.inverse_u = inverse_u;
+      sample.color = first->color * (weight_a / sum) + second->color * (weight_b / sum) +
+                     third->color * (weight_c / sum);
+      sample.intensity = first->intensity * (weight_a / sum) + second->intensity * (weight_b / sum) +
+                         third->intensity * (weight_c / sum);
+      sample.grid = triangle.grid;
+      sample.texture = referenceFootprint({a, b, c}, {first->texture, second->texture, third->texture}, ray);
+      sample.surface = triangle.surface;
+      sample.identity = triangle.identity;
     }
   }
   return covers;
 }
 
-Picture finish(const std::vector<Sample>& samples, const Environment& environment,
-               const RenderOptions& options, FrameStatistics& statistics) {
+Result<Picture> finish(const std::vector<Sample>& samples, const Environment& environment,
+                       const RenderOptions& options, FrameStatistics& statistics) {
   Picture picture = makePicture(options);
+  ReferenceTexture texture(environment.color_map);
   std::uint64_t covered = 0;
   for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
     const Sample& sample = samples[pixel];
@@ -262,7 +296,11 @@ Picture finish(const std::vector<Sample>& samples, const Environment& environmen
     const double nearest_u = 1 / sample.inverse_u;  // infinite where there is none
     covered += sample.inverse_u > 0;
     if (sample.inverse_u > 0 && nearest_u <= sea_u) {
-      storePixel(environment, ray, sample.surface, nearest_u, sample.color, pixel, picture);
+      LinearColor color = sample.color;
+      if (sample.surface == Surface::kTerrain) {
+        DELTAZ_TRY_ASSIGN(color, texture.shade(sample.color, sample.intensity, sample.grid, sample.texture));
+      }
+      storePixel(environment, ray, sample.surface, nearest_u, color, pixel, picture);
       if (options.keep_triangle_ids) picture.triangle[pixel] = sample.identity;
       ++statistics.samples.shaded;
     } else if (sea_u < std::numeric_limits<double>::infinity()) {
@@ -271,6 +309,7 @@ Picture finish(const std::vector<Sample>& samples, const Environment& environmen
       storePixel(environment, ray, Surface::kSky, sea_u, environment.atmosphere.sky(ray), pixel, picture);
     }
   }
+  statistics.color_tiles = texture.tilesRead();
   if (covered > 0)
     statistics.depth_complexity =
         static_cast<double>(statistics.samples.tested) / static_cast<double>(covered);
@@ -320,7 +359,6 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   }
   DELTAZ_TRY_ASSIGN(const std::vector<ReferenceModelTriangle> models,
                     referenceModels(database, poses, environment, statistics));
-  statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read = watch.lap();
 
   const SeamIndex seams(database);
@@ -335,8 +373,10 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   const AllPosts posts(database, nodes, vertices);
   std::vector<std::vector<Vertex>> of_seams;
   for (const Seam& seam : database.seams()) {
-    of_seams.push_back(seamVertices(seam, posts));
-    addSeamTriangles(seam, of_seams.back(), posts, database, nodes, triangles, of_node);
+    for (const SeamSide side : {SeamSide::kUpper, SeamSide::kLower}) {
+      of_seams.push_back(seamVertices(seam, posts, database, gridOf(seam, side)));
+      addSeamTriangles(seam, side, of_seams.back(), posts, database, nodes, triangles, of_node);
+    }
   }
   std::vector<Vertex> of_models;
   triangles.push_back(modelTriangles(models, of_models));
@@ -378,7 +418,8 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   }
   statistics.milliseconds.raster = watch.lap();
 
-  Picture picture = finish(samples, environment, options, statistics);
+  DELTAZ_TRY_ASSIGN(Picture picture, finish(samples, environment, options, statistics));
+  statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.resolve = watch.lap();
   statistics.milliseconds.total = watch.total();
   return picture;

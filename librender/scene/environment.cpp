@@ -1,7 +1,9 @@
 #include "librender/scene/environment.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
+#include <string>
 
 namespace deltaz {
 namespace {
@@ -27,6 +29,18 @@ Status checkOptions(const RenderOptions& options) {
   return Success{};
 }
 
+Result<const ColorMap*> chooseColorMap(const Database& database, const std::string& name) {
+  const std::vector<ColorMap>& maps = database.colorMaps();
+  if (name == kNoColorMap || (name.empty() && maps.empty())) return nullptr;
+  if (name.empty()) return &maps.front();
+  if (const auto index = database.findColorMap(name)) return &maps[*index];
+  std::string names;
+  for (const AssetHeader& map : database.area().color_maps) names += (names.empty() ? "" : ", ") + map.name;
+  return usageError("colour map", fmt::format("{} has no colour map '{}'", database.path(), name),
+                    names.empty() ? "it has none at all" : "it has " + names,
+                    fmt::format("Give the name of one, or '{}' for colours by rule", kNoColorMap));
+}
+
 }  // namespace
 
 Result<Environment> makeEnvironment(const Database& database, const RenderOptions& options) {
@@ -37,7 +51,8 @@ Result<Environment> makeEnvironment(const Database& database, const RenderOption
   const ViewTransform view = makeViewTransform(options.camera, ellipsoid);
   const Light light = makeLight(area, options.sun);
   const Atmosphere atmosphere(ellipsoid, view, light.to_sun);
-  return Environment{view, light, atmosphere, Sea(area, view, light, atmosphere)};
+  DELTAZ_TRY_ASSIGN(const ColorMap* const color_map, chooseColorMap(database, options.color_map));
+  return Environment{view, light, atmosphere, Sea(area, view, light, atmosphere), color_map};
 }
 
 Picture makePicture(const RenderOptions& options) {

@@ -13,9 +13,11 @@ struct Environment {
   Light light;
   Atmosphere atmosphere;
   Sea sea;
+  const ColorMap* color_map = nullptr;  // nullptr: colours by rule alone
 };
 
-// kUsage for views that make no sense.
+// kUsage for views that make no sense and for colour maps that are not there. The database must live as
+// long.
 Result<Environment> makeEnvironment(const Database& database, const RenderOptions& options);
 
 // A picture of the frame's size with room for what the options ask for, all sky.

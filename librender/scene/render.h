@@ -69,6 +69,7 @@ struct FrameStatistics {
   } samples;
   std::uint64_t bytes_read = 0;
   std::uint64_t posts_decoded = 0;
+  std::uint64_t color_tiles = 0;      // of the colour map, read
   int level = 0, coarsest_level = 0;  // of detail, drawn: the finest and the coarsest
   double projected_error = 0;         // pixels, bound of what is drawn
   double depth_complexity = 0;        // samples tested per covered pixel

@@ -173,8 +173,10 @@ TEST(TerrainObjectProcessor, light_follows_the_slope) {
   area.south = 46.5;
   area.north = 46.6;
   area.grids.push_back(grid);
-  const LinearColor lit = terrainColors(tile, GridGeometry(grid), makeLight(area, {270, 30}))[30 * 61 + 30];
-  const LinearColor dark = terrainColors(tile, GridGeometry(grid), makeLight(area, {90, 30}))[30 * 61 + 30];
+  const LinearColor lit =
+      terrainShading(tile, GridGeometry(grid), makeLight(area, {270, 30})).color[30 * 61 + 30];
+  const LinearColor dark =
+      terrainShading(tile, GridGeometry(grid), makeLight(area, {90, 30})).color[30 * 61 + 30];
   const Light light;
   EXPECT_NEAR(dark.green / lit.green,
               light.ambient / (light.ambient + light.diffuse * std::cos((60 - 43.3) * std::acos(-1) / 180)),

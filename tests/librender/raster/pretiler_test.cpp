@@ -38,6 +38,8 @@ Drawn drawAll(const ViewTransform& view, const std::vector<Vector3>& position,
   TerrainVertices vertices;
   vertices.position = position;
   vertices.color.resize(position.size());
+  vertices.intensity.resize(position.size());
+  vertices.texture.resize(position.size());
   TerrainFaces front;
   for (const auto& face : faces) {
     TerrainFace next;
