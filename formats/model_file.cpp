@@ -59,7 +59,7 @@ const char* faultOf(const ModelPart& part, std::size_t number, std::uint32_t blo
   if (!isDistance(part.radius)) return "a radius is out of range";
   for (const ModelLod& lod : part.lods) {
     // The last block is the tree itself.
-    if (lod.block + 1 >= blocks) return "a mesh is not in the file";
+    if (std::uint64_t{lod.block} + 1 >= blocks) return "a mesh is not in the file";
     if (!isDistance(lod.error)) return "an error is out of range";
   }
   return nullptr;

@@ -62,6 +62,8 @@ Result<PlacementDirectory> decodePlacementDirectory(std::span<const std::byte> b
       pages != (std::uint64_t{directory.count} + kPlacementsPerPage - 1) / kPlacementsPerPage)
     return damaged(where, "its counts are not those of the file");
   if (directory.next_instance == 0) return damaged(where, "it has run out of numbers");
+  if (directory.count >= directory.next_instance)
+    return damaged(where, "it has more placements than numbers were given");
   for (std::uint32_t k = 0; k < pages; ++k) {
     PlacementSphere page;
     for (double& value : page.centre) {

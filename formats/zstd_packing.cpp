@@ -30,6 +30,10 @@ std::vector<std::byte> packBytes(std::span<const std::byte> raw) {
 }
 
 bool unpackBytes(std::span<const std::byte> packed, std::span<std::byte> raw) {
+  // One frame that says how much it holds: a decompressor would also take several, or empty ones behind it.
+  if (ZSTD_getFrameContentSize(packed.data(), packed.size()) != raw.size() ||
+      ZSTD_findFrameCompressedSize(packed.data(), packed.size()) != packed.size())
+    return false;
   const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), packed.data(), packed.size());
   return !ZSTD_isError(size) && size == raw.size();
 }

@@ -1,5 +1,6 @@
 #include "formats/area.h"
 
+#include <functional>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -123,6 +124,82 @@ TEST(Area, a_name_that_is_not_utf8_stays_readable) {
   AreaHeader area = sampleArea();
   area.grids[0].sources[0].name = "caf\xE9.tif";
   EXPECT_TRUE(parseArea(serializeArea(area), "a").ok());
+}
+
+AreaHeader areaWithAssets() {
+  AreaHeader area = sampleArea();
+  area.color_maps = {{"summer", "image", {{"ortho.tif", Hash128{{std::byte{1}, std::byte{2}}}}, {"b.tif", {}}}, {{"texel", "30m"}}},
+                     {"winter", "synthetic", {}, {}}};
+  area.models = {{"tower", "mesh", {{"tower.glb", {}}}, {}}, {"a.b_c-2", "mesh", {}, {{"units", "ft"}}}};
+  area.files.push_back({FileRole::kColors, 0, "colors-000002-000.dzc", 5, {}});
+  area.files.push_back({FileRole::kColors, 1, "colors-000003-001.dzc", 5, {}});
+  area.files.push_back({FileRole::kModel, 0, "model-000004-000.dzm", 5, {}});
+  area.files.push_back({FileRole::kModel, 1, "model-000004-001.dzm", 5, {}});
+  area.files.push_back({FileRole::kPlacements, 0, "placements-000005.dzl", 5, {}});
+  return area;
+}
+
+TEST(Area, colour_maps_and_models_read_back) {
+  const std::string text = serializeArea(areaWithAssets());
+  const Result<AreaHeader> back = parseArea(text, "area.json");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back.value(), areaWithAssets());
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    std::string flipped = text;
+    flipped[k] = static_cast<char>(flipped[k] ^ (1 << (k % 8)));
+    ASSERT_FALSE(parseArea(flipped, "area.json").ok()) << "byte " << k;
+  }
+}
+
+// Programs that know no colours or models are told by a required feature, and only where there are any.
+TEST(Area, features_are_named_where_they_are_used_and_nowhere_else) {
+  const auto features = [](const AreaHeader& area) {
+    const std::string text = serializeArea(area);
+    const std::size_t begin = text.find("\"required_features\"");
+    return text.substr(begin, text.find(']', begin) - begin);
+  };
+  const std::string plain = serializeArea(sampleArea());
+  EXPECT_NE(plain.find("\"required_features\": [],"), std::string::npos);
+  for (const char* const word : {"colors", "color_maps", "models", "placements"})
+    EXPECT_EQ(plain.find(word), std::string::npos) << word;
+  AreaHeader colored = areaWithAssets();
+  colored.models.clear();
+  std::erase_if(colored.files, [](const FileReference& file) {
+    return file.role == FileRole::kModel || file.role == FileRole::kPlacements;
+  });
+  EXPECT_NE(features(colored).find("colors"), std::string::npos);
+  EXPECT_EQ(features(colored).find("models"), std::string::npos);
+  AreaHeader placed = sampleArea();
+  placed.files.push_back(areaWithAssets().files.back());
+  EXPECT_EQ(features(placed).find("colors"), std::string::npos);
+  EXPECT_NE(features(placed).find("models"), std::string::npos) << "placements outlast models";
+  for (const AreaHeader& area : {colored, placed})
+    EXPECT_EQ(parseArea(serializeArea(area), "a").value(), area);
+}
+
+TEST(Area, a_feature_that_is_not_used_is_not_canonical) {
+  EXPECT_EQ(
+      parseArea(withReplaced("\"required_features\": []", "\"required_features\": [\n    \"colors\"\n  ]"),
+                "a")
+          .error()
+          .code,
+      IssueCode::kManField);
+}
+
+TEST(Area, names_of_colour_maps_and_models_are_plain_and_unique) {
+  const auto accepted = [](const std::function<void(AreaHeader&)>& change) {
+    AreaHeader area = areaWithAssets();
+    change(area);
+    return parseArea(serializeArea(area), "a").ok();
+  };
+  EXPECT_TRUE(accepted([](auto&) {}));
+  EXPECT_TRUE(accepted([](auto& a) { a.models[0].name = "summer"; })) << "a map and a model may share one";
+  EXPECT_TRUE(accepted([](auto& a) { a.models[0].name = std::string(64, 'x'); }));
+  EXPECT_FALSE(accepted([](auto& a) { a.color_maps[1].name = "summer"; }));
+  EXPECT_FALSE(accepted([](auto& a) { a.models[1].name = "tower"; }));
+  for (const std::string name : {"", "none", "a/b", "..", ".a", "a.", "-a", "a b", "\xC3\xBC"})
+    EXPECT_FALSE(accepted([&](auto& a) { a.color_maps[0].name = name; })) << name;
+  EXPECT_FALSE(accepted([](auto& a) { a.models[0].name = std::string(65, 'x'); }));
 }
 
 TEST(Area, something_else_is_not_a_database) {
