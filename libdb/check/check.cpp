@@ -15,9 +15,20 @@ void runRules(CheckContext& context) {
   if (!openDatabaseFiles(context)) return;
   checkFolder(context);
   checkTree(context);
+  checkColorTrees(context);
+  checkModelTrees(context);
+  checkPlacementRecords(context);
   if (context.options.level >= CheckLevel::kChecksum) checkChecksums(context);
-  if (context.options.level >= CheckLevel::kDecode) checkTerrain(context);
-  if (context.options.level >= CheckLevel::kGeometry) checkGeometry(context);
+  if (context.options.level >= CheckLevel::kDecode) {
+    checkTerrain(context);
+    checkColorTiles(context);
+    checkModelMeshes(context);
+    checkPlacedModels(context);
+  }
+  if (context.options.level >= CheckLevel::kGeometry) {
+    checkGeometry(context);
+    checkModelErrors(context);
+  }
   if (context.options.against != nullptr) checkAgainstSource(context);
 }
 

@@ -19,6 +19,9 @@
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/node_position.h"
 #include "libdb/check/check.h"
+#include "libdb/check/check_colors.h"
+#include "libdb/check/check_models.h"
+#include "libdb/check/check_placements.h"
 
 namespace deltaz {
 
@@ -45,6 +48,9 @@ struct CheckContext {
   // False if the control points of a projected grid could not be read: then no position may be asked for.
   bool positions_known = true;
   std::vector<Seam> seams;                         // those that could be decoded
+  std::vector<CheckedColorMap> color_maps;         // those whose file could be opened
+  std::vector<CheckedModel> models;                // in area.json's order
+  std::optional<CheckedPlacements> placements;     // if their directory could be read
   std::vector<CheckedFile> listed;                 // in area.json's order
   CheckedFile* nodes = nullptr;                    // none if it could not be opened
   std::map<std::uint32_t, CheckedFile*> segments;  // listed ones, opened or not

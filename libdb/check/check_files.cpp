@@ -1,6 +1,7 @@
 // area.json, the files it lists, and what else lies in the folder.
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -87,22 +88,32 @@ void openFile(CheckContext& context, CheckedFile& file) {
              fmt::format("the contents of {}, which could not be opened", file.reference.name));
 }
 
-// What readers rely on in the list of files as a whole: one node file of the right number of pages, and
-// terrain segments numbered from 0 on.
+// What readers rely on in the list of files as a whole: one node file of the right number of pages, terrain
+// segments numbered from 0 on, and a file for each colour map and model in the order of their headers.
 void checkFileList(CheckContext& context) {
   const auto complain = [&](std::string message) {
     context.report.add(
         makeIssue(IssueCode::kManField, std::move(message), inFile(std::string(kAreaFileName))));
   };
   std::size_t node_files = 0;
-  std::uint32_t next_segment = 0;
+  std::map<FileRole, std::uint32_t> next;
   for (const CheckedFile& file : context.listed) {
-    if (file.reference.role == FileRole::kNodes) {
-      ++node_files;
-    } else if (file.reference.role == FileRole::kTerrain && file.reference.segment != next_segment++) {
-      complain(fmt::format("terrain segment {} is not numbered in order", file.reference.segment));
+    const FileRole role = file.reference.role;
+    if (role == FileRole::kNodes) ++node_files;
+    const bool numbered = role == FileRole::kTerrain || role == FileRole::kColors ||
+                          role == FileRole::kModel || role == FileRole::kPlacements;
+    if (numbered && file.reference.segment != next[role]++) {
+      complain(fmt::format("file {} of role {} is number {}, which is out of order", file.reference.name,
+                           fileRoleName(role), file.reference.segment));
     }
   }
+  const auto expect = [&](FileRole role, std::size_t count) {
+    if (next[role] == count) return;
+    complain(fmt::format("{} files of role {} are listed, not {}", next[role], fileRoleName(role), count));
+  };
+  expect(FileRole::kColors, context.area.color_maps.size());
+  expect(FileRole::kModel, context.area.models.size());
+  if (next[FileRole::kPlacements] > 1) complain("two files of placements are listed");
   if (node_files != 1) complain(fmt::format("{} node files are listed, not one", node_files));
   if (context.nodes == nullptr) return;
   const std::uint32_t pages = (context.area.node_count - 1) / kNodesPerPage + 1;

@@ -51,9 +51,12 @@ void checkGeometry(CheckContext& context) {
   }
   for (std::uint16_t grid = 0; grid < context.grids.size(); ++grid) checkPatches(context, grid);
   checkRanges(context);
-  // Posts that contradict each other would give findings without number that say nothing new.
+  // Posts that contradict each other would give findings without number that say nothing new. What stands on
+  // the ground or colours it changes no post.
   for (const IssueGroup& group : context.report.groups) {
-    if (group.severity != Severity::kError || group.code == IssueCode::kTileLod) continue;
+    if (group.severity != Severity::kError || group.code == IssueCode::kTileLod ||
+        group.code >= IssueCode::kColorTree)
+      continue;
     addSkipped(context.report, "errors, cones and normals, since there are errors already");
     return;
   }
