@@ -33,6 +33,8 @@ std::vector<Asset> tileAssets();    // TILE
 std::vector<Asset> heightAssets();  // HGT
 std::vector<Asset> errorAssets();   // ERR
 std::vector<Asset> sourceAssets();  // SRC
+std::vector<Asset> colorAssets();   // COL
+std::vector<Asset> modelAssets();   // MDL, PLC
 
 // The source and the sound database: partial leaves all around, one void post.
 RawGrid sourceGrid();

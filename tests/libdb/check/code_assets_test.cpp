@@ -17,8 +17,8 @@ namespace {
 const std::vector<Asset>& assets() {
   static const std::vector<Asset> kAssets = [] {
     std::vector<Asset> all;
-    for (const auto& family :
-         {fileAssets(), treeAssets(), tileAssets(), heightAssets(), errorAssets(), sourceAssets()})
+    for (const auto& family : {fileAssets(), treeAssets(), tileAssets(), heightAssets(), errorAssets(),
+                               sourceAssets(), colorAssets(), modelAssets()})
       all.insert(all.end(), family.begin(), family.end());
     return all;
   }();
