@@ -19,5 +19,6 @@ class Command {
 std::unique_ptr<Command> makeTerrainCommand(CLI::App& parent);
 std::unique_ptr<Command> makeInfoCommand(CLI::App& parent);
 std::unique_ptr<Command> makeExportCommand(CLI::App& parent);
+std::unique_ptr<Command> makeRunCommand(CLI::App& parent);
 
 }  // namespace deltaz

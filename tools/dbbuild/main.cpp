@@ -14,13 +14,13 @@ int main(int argc, char** argv) {
         "Exit codes: 0 done; 1 content refused or damaged; 2 usage, target exists; 3 cannot read, write or "
         "lock;\n"
         "4 newer format; 70 internal error. See dbbuild(1).");
-    const std::array<std::unique_ptr<Command>, 3> commands = {makeTerrainCommand(app), makeInfoCommand(app),
-                                                              makeExportCommand(app)};
+    const std::array<std::unique_ptr<Command>, 4> commands = {makeTerrainCommand(app), makeRunCommand(app),
+                                                              makeInfoCommand(app), makeExportCommand(app)};
     if (const auto code = parseCommandLine(app, "dbbuild", argc, argv)) return *code;
     for (const auto& command : commands) {
       if (command->app().parsed()) return command->run();
     }
-    return usageError("command line", "a subcommand is required: terrain, info or export", {},
+    return usageError("command line", "a subcommand is required: terrain, run, info or export", {},
                       "See 'dbbuild --help'");
   });
 }
