@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <optional>
 #include <toml++/toml.h>
 
 #include "formats/file_system.h"

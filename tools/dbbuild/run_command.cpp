@@ -1,7 +1,7 @@
 // dbbuild run: a whole database from one build file. Every section is run as the command it is named after,
 // on a database in a temporary folder; the target appears when all of them are done.
+#include <algorithm>
 #include <fmt/format.h>
-#include <functional>
 #include <iostream>
 #include <sstream>
 
