@@ -9,6 +9,7 @@
 #include "tools/common/progress.h"
 #include "tools/dbview/depth_description.h"
 #include "tools/dbview/options.h"
+#include "tools/dbview/pose_file.h"
 #include "tools/dbview/statistics_json.h"
 
 namespace deltaz {
@@ -64,6 +65,7 @@ Result<int> run(const ViewOptions& options) {
   DELTAZ_TRY_ASSIGN(View view, parseView(options));
   DELTAZ_TRY_ASSIGN(const Database database, Database::open(localFileSystem(), options.area));
   DELTAZ_TRY(placeCamera(database, options, view));
+  DELTAZ_TRY(checkPoses(database, view.render.poses, options.pose_path));
   DELTAZ_TRY_ASSIGN(const Frame frame, renderFrame(database, view, options.common));
 
   const Json statistics = statisticsJson(options.area, view, frame.repeats);

@@ -7,6 +7,7 @@
 #include "libdb/access/ground_query.h"
 #include "tools/common/output_file.h"
 #include "tools/common/parse.h"
+#include "tools/dbview/pose_file.h"
 
 namespace deltaz {
 
@@ -68,6 +69,8 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
                  "fast, or reference: double precision, every triangle (default: fast)")
       ->check(CLI::IsMember({"fast", "reference"}))
       ->type_name("ENGINE");
+  addPathOption(app, "--pose", options.pose_path, "Where parts of models have moved to, see dbview(1)")
+      ->type_name("FILE.json");
   addPathOption(app, "--stats", options.statistics_path, "Write statistics of the frame as JSON")
       ->type_name("FILE.json");
   addPathOption(app, "--depth", options.depth_path,
@@ -113,6 +116,9 @@ Result<View> parseView(const ViewOptions& options) {
   view.repeat = static_cast<int>(repeat);
   view.engine = options.engine == "reference" ? EngineKind::kReference : EngineKind::kFast;
   DELTAZ_TRY(checkOutputs(options));
+  if (!options.pose_path.empty()) {
+    DELTAZ_TRY_ASSIGN(render.poses, readPoseFile(options.pose_path));
+  }
   return view;
 }
 

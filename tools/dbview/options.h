@@ -18,7 +18,7 @@ struct ViewOptions {
   std::string sun;
   std::string tolerance = "1";
   std::string engine = "fast";
-  std::string statistics_path, depth_path;
+  std::string statistics_path, depth_path, pose_path;
   std::string repeat = "1";
 };
 
@@ -31,8 +31,9 @@ struct View {
   int repeat = 1;
 };
 
-// Everything of the options that can be judged without a database. The camera is complete but for an eye
-// above ground. Errors: kUsage, kCannotAccess (an output cannot be written).
+// Everything of the options that can be judged without a database; the file of poses is read. The camera is
+// complete but for an eye above ground. Errors: kUsage, kCannotAccess (an output cannot be written), kInvalid
+// (the file of poses).
 Result<View> parseView(const ViewOptions& options);
 
 // Completes the camera: the whole-area view where no eye was given, ground height where it stands above

@@ -48,6 +48,9 @@ Json frameJson(std::span<const FrameStatistics> repeats) {
                    {"facing_away", first.nodes.facing_away},
                    {"occluded", first.nodes.occluded},
                    {"drawn", first.nodes.drawn}};
+  json["models"] = {{"visited", first.models.visited},
+                    {"out_of_view", first.models.out_of_view},
+                    {"drawn", first.models.drawn}};
   json["triangles"] = {{"in", first.triangles.in},
                        {"back_facing", first.triangles.back_facing},
                        {"clipped", first.triangles.clipped},
