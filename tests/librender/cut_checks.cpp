@@ -118,9 +118,13 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
     mesh.tiles[n] = std::move(tile).value();
     const GridGeometry& geometry = database.grid(mesh.tiles[n]->grid);
     // Colours do not matter here, and normals cost most.
-    vertices[n] = {
-        mesh.tiles[n]->columns, mesh.tiles[n]->rows, terrainPositions(*mesh.tiles[n], geometry, view), {}};
-    vertices[n].color.resize(vertices[n].position.size());
+    TerrainVertices& of_node = vertices[n];
+    of_node.columns = mesh.tiles[n]->columns;
+    of_node.rows = mesh.tiles[n]->rows;
+    of_node.position = terrainPositions(*mesh.tiles[n], geometry, view);
+    of_node.color.resize(of_node.position.size());
+    of_node.intensity.resize(of_node.position.size());
+    of_node.texture.resize(of_node.position.size());
     processed[n] = {&*mesh.tiles[n], &vertices[n]};
   }
   const SeamIndex seams(database);
