@@ -3,6 +3,7 @@
 #include <GeographicLib/Geocentric.hpp>
 #include <cmath>
 #include <cstddef>
+#include <fmt/format.h>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -35,7 +36,7 @@ class PlacedPart {
     const GeographicLib::Geocentric earth(
         ellipsoid.semi_major_axis, ellipsoid.inverse_flattening == 0 ? 0 : 1 / ellipsoid.inverse_flattening);
     Vector3 at;
-    std::vector<double> axes;  // rows of the matrix from (east, north, up) to Earth-centred axes
+    std::vector<double> axes(9);  // rows of the matrix from (east, north, up) to Earth-centred axes
     earth.Forward(placement.latitude, placement.longitude, placement.height, at.x, at.y, at.z, axes);
     const Vector3 east{axes[0], axes[3], axes[6]}, north{axes[1], axes[4], axes[7]};
     up_ = {axes[2], axes[5], axes[8]};
@@ -73,15 +74,24 @@ class PlacedPart {
   bool mirrored_ = false;
 };
 
-void addMesh(const ModelMesh& mesh, const PlacedPart& part, std::uint32_t instance,
-             const Environment& environment, FrameStatistics::Triangles& counts,
-             std::vector<ReferenceModelTriangle>& triangles) {
+// Matrices that multiply to infinity leave nothing to be drawn.
+bool isPoint(const Vector3& p) {
+  return length(p) < 1e12;
+}
+
+Status addMesh(const ModelMesh& mesh, const PlacedPart& part, std::uint32_t instance,
+               const Environment& environment, FrameStatistics::Triangles& counts,
+               std::vector<ReferenceModelTriangle>& triangles) {
   const ViewTransform& view = environment.view;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     ++counts.in;
     const auto& corners = mesh.triangles[t];
     std::array<Vector3, 3> at;
     for (std::size_t k = 0; k < 3; ++k) at[k] = part.point(toVector(mesh.vertices[corners[k]]));
+    if (!isPoint(at[0]) || !isPoint(at[1]) || !isPoint(at[2])) {
+      return invalidError(IssueCode::kModelTree, fmt::format("instance {}", instance),
+                          "the matrices of one of its parts multiply to more than any model");
+    }
     const Vector3 outwards = cross(at[1] - at[0], at[2] - at[0]) * (part.mirrored() ? -1 : 1);
     const double away = dot(outwards, at[0]);
     if (away == 0 || (away > 0 && !mesh.two_sided)) {
@@ -106,6 +116,7 @@ void addMesh(const ModelMesh& mesh, const PlacedPart& part, std::uint32_t instan
     }
     triangles.push_back(triangle);
   }
+  return Success{};
 }
 
 }  // namespace
@@ -128,7 +139,8 @@ Result<std::vector<ReferenceModelTriangle>> referenceModels(const Database& data
         mesh = meshes.emplace(std::pair(placement.model, p), std::move(finest)).first;
       }
       const PlacedPart part(tree, p, placement, poses, environment, database.area().grids.front().ellipsoid);
-      addMesh(mesh->second, part, placement.instance, environment, statistics.triangles, triangles);
+      DELTAZ_TRY(
+          addMesh(mesh->second, part, placement.instance, environment, statistics.triangles, triangles));
     }
   }
   statistics.models.visited = statistics.models.drawn = placements.size();

@@ -22,6 +22,7 @@ struct Instance {
   std::uint32_t number = 0, model = 0;
   const PosedTree* tree = nullptr;
   ModelTransform to_earth{};  // of model space
+  Sphere sphere;              // around all of it, Earth-centred
   bool drawn = false;
 };
 
@@ -37,7 +38,7 @@ class ModelTreeProcessor {
         volume_(view) {}
 
   Result<ModelSchedule> run() {
-    const double reach = reachOfMotions();
+    DELTAZ_TRY_ASSIGN(const double reach, reachOfMotions());
     for (std::uint32_t page = 0; page < scene_.pages.size(); ++page) {
       const PlacementSphere& sphere = scene_.pages[page];
       if (!outside({{sphere.centre[0], sphere.centre[1], sphere.centre[2]}, sphere.radius + reach}))
@@ -73,31 +74,29 @@ class ModelTreeProcessor {
     return options_.cull && (sphere.empty() || volume_.isOutside(sphere.centre, sphere.radius + kRounding));
   }
 
-  const PosedTree& treeOf(std::uint32_t model, std::uint32_t variant) {
+  Result<const PosedTree*> treeOf(std::uint32_t model, std::uint32_t variant) {
     auto found = trees_.find({model, variant});
     if (found == trees_.end()) {
-      found =
-          trees_.emplace(std::pair(model, variant), posedTree(*scene_.trees[model], poses_, model, variant))
-              .first;
+      DELTAZ_TRY_ASSIGN(PosedTree tree, posedTree(*scene_.trees[model], poses_, model, variant));
+      found = trees_.emplace(std::pair(model, variant), std::move(tree)).first;
     }
-    return found->second;
+    return &found->second;
   }
 
-  // In model space, what the model's stored sphere is by default.
-  Sphere sphereOf(std::uint32_t model, std::uint32_t variant) {
-    if (poses_.posed(model, variant)) return treeOf(model, variant).subtree[0];
+  // In model space, around all parts as they stand by default.
+  Sphere defaultSphere(std::uint32_t model) const {
     const ModelTree& tree = *scene_.trees[model];
     return {{tree.centre[0], tree.centre[1], tree.centre[2]}, tree.radius};
   }
 
   // How far motions bring anything out of the sphere its model has by default, metres.
-  double reachOfMotions() {
+  Result<double> reachOfMotions() {
     double reach = 0;
     for (const auto& [model, variant] : poses_.posedVariants()) {
-      const Sphere posed = sphereOf(model, variant);
-      const ModelTree& tree = *scene_.trees[model];
-      const Vector3 centre{tree.centre[0], tree.centre[1], tree.centre[2]};
-      if (!posed.empty()) reach = std::max(reach, length(posed.centre - centre) + posed.radius - tree.radius);
+      DELTAZ_TRY_ASSIGN(const PosedTree* const tree, treeOf(model, variant));
+      const Sphere &posed = tree->subtree[0], standing = defaultSphere(model);
+      if (!posed.empty())
+        reach = std::max(reach, length(posed.centre - standing.centre) + posed.radius - standing.radius);
     }
     return reach;
   }
@@ -106,12 +105,16 @@ class ModelTreeProcessor {
     DELTAZ_TRY_ASSIGN(const std::vector<Placement> placements, scene_.read_page(page));
     for (const Placement& placement : placements) {
       ++statistics_.visited;
+      const std::uint32_t variant = poses_.variant(placement.model, placement.instance);
       Instance instance;
       instance.number = placement.instance;
       instance.model = placement.model;
-      instance.tree = &treeOf(placement.model, poses_.variant(placement.model, placement.instance));
+      DELTAZ_TRY_ASSIGN(instance.tree, treeOf(placement.model, variant));
       instance.to_earth =
           placementTransform(placement, scene_.trees[placement.model]->anchor, scene_.ellipsoid);
+      instance.sphere = transformed(
+          poses_.posed(placement.model, variant) ? instance.tree->subtree[0] : defaultSphere(placement.model),
+          instance.to_earth);
       queue_.push_back({Kind::kPlacement, static_cast<std::uint32_t>(instances_.size()), 0});
       instances_.push_back(instance);
     }
@@ -119,9 +122,7 @@ class ModelTreeProcessor {
   }
 
   void processPlacement(std::uint32_t index) {
-    const Instance& instance = instances_[index];
-    const Sphere sphere = sphereOf(instance.model, poses_.variant(instance.model, instance.number));
-    if (!outside(transformed(sphere, instance.to_earth))) queue_.push_back({Kind::kPart, index, 0});
+    if (!outside(instances_[index].sphere)) queue_.push_back({Kind::kPart, index, 0});
   }
 
   void processPart(std::uint32_t index, std::uint32_t number) {

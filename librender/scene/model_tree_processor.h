@@ -10,7 +10,7 @@
 // part that only carries others does not block them. A part that has moved may have left the spheres stored
 // for it as it stands by default; those of moved models are made anew, and those of pages grown by as much.
 //
-// Errors: whatever reading pages reports. Thread-safety: pure functions.
+// Errors: whatever reading pages and posedTree report. Thread-safety: pure functions.
 #pragma once
 
 #include <cstdint>

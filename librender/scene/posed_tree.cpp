@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <fmt/format.h>
+#include <string>
 
 #include "libdb/access/model.h"
 
@@ -11,6 +13,15 @@ namespace {
 
 // More than the rounding of the few operations that move a sphere.
 constexpr double kRoundUp = 1 + 1e-12;
+
+bool isBelievable(const ModelTransform& m) {
+  for (const double value : m) {
+    if (!(std::abs(value) <= kLargestPosedMetres)) return false;
+  }
+  const double volume = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+                        m[2] * (m[3] * m[7] - m[4] * m[6]);
+  return std::abs(volume) >= kSmallestPosedVolume;
+}
 
 }  // namespace
 
@@ -33,8 +44,8 @@ Sphere transformed(const Sphere& sphere, const ModelTransform& m) {
   return {centre, (sphere.radius * largestStretch(m) + magnitude * 1e-15) * kRoundUp};
 }
 
-PosedTree posedTree(const ModelTree& tree, const PoseTable& poses, std::uint32_t model,
-                    std::uint32_t variant) {
+Result<PosedTree> posedTree(const ModelTree& tree, const PoseTable& poses, std::uint32_t model,
+                            std::uint32_t variant) {
   const std::size_t count = tree.parts.size();
   PosedTree posed;
   posed.children.resize(count);
@@ -50,6 +61,14 @@ PosedTree posedTree(const ModelTree& tree, const PoseTable& poses, std::uint32_t
     Sphere own;
     if (!part.lods.empty())
       own = transformed({{part.centre[0], part.centre[1], part.centre[2]}, part.radius}, matrix);
+    if (!isBelievable(matrix) || !(own.radius <= kLargestPosedMetres)) {
+      const std::string where =
+          fmt::format("model {} of area.json, counted from 0, part \"{}\"", model, part.name);
+      const char* const what =
+          "the matrices from it to its model's root multiply to nothing, or to more than any model";
+      if (poses.posed(model, variant)) return usageError(where, what, "a pose is among them");
+      return invalidError(IssueCode::kModelTree, where, what);
+    }
     posed.own.push_back(own);
   }
   // Parents stand before their children.

@@ -284,6 +284,29 @@ TEST(ModelTreeProcessor, an_error_of_a_page_is_passed_on) {
   EXPECT_EQ(schedule.error().code, IssueCode::kPlacementRecord);
 }
 
+TEST(ModelTreeProcessor, matrices_that_multiply_beyond_all_bounds_are_refused) {
+  for (const double scale : {1e6, 1e-7}) {
+    for (const bool posed : {false, true}) {
+      Tanks tanks;
+      tanks.placements = {placed(1, kLatitude, kLongitude)};
+      PoseTable poses;
+      for (const std::uint32_t part : {kBody, kTurret, kLargeGun}) {
+        if (posed) {
+          poses.add(0, part, 0, turned(0, scale));
+        } else {
+          tanks.tree.parts[part].transform = turned(0, scale);
+        }
+      }
+      FrameStatistics::Models statistics;
+      const Result<ModelSchedule> schedule =
+          processModelTrees(tanks.scene(), poses, viewFrom(60), {}, statistics);
+      ASSERT_FALSE(schedule.ok());
+      EXPECT_EQ(schedule.error().kind, posed ? ErrorKind::kUsage : ErrorKind::kInvalid);
+      EXPECT_NE(schedule.error().message().find("\"turret\""), std::string::npos);
+    }
+  }
+}
+
 // Views of all kinds, tanks in random poses: whatever part culling drops has no point of its sphere in the
 // picture. Without culling all parts are there, so what was dropped is known.
 TEST(ModelTreeProcessor, culling_drops_only_what_is_out_of_the_picture) {
