@@ -59,6 +59,10 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
   app.add_option("--fov", options.field_of_view, "Horizontal field of view, degrees (default: 60)")
       ->type_name("DEG");
   app.add_option("--size", options.size, "Size of the picture, pixels (default: 1280x720)")->type_name("WxH");
+  app.add_option("--color", options.color,
+                 "The colour map to draw with (default: the first), or none for colours made from altitude "
+                 "and slope")
+      ->type_name("NAME");
   app.add_option("--sun", options.sun,
                  "Where the sun is, seen from the area's centre, degrees (default: 225,40)")
       ->type_name("AZIMUTH,ELEVATION");
@@ -110,6 +114,7 @@ Result<View> parseView(const ViewOptions& options) {
     DELTAZ_TRY_ASSIGN(const SunDirection sun, parseSun(options.sun, "--sun"));
     render.sun = {sun.azimuth, sun.elevation};
   }
+  render.color_map = options.color;
   DELTAZ_TRY_ASSIGN(render.tolerance,
                     parseNumberBetween(options.tolerance, "--tolerance", 0, kLargestTolerance));
   DELTAZ_TRY_ASSIGN(const std::int64_t repeat, parseInteger(options.repeat, "--repeat", 1, kLargestRepeat));

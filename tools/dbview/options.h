@@ -17,6 +17,7 @@ struct ViewOptions {
   std::string size = "1280x720";
   std::string sun;
   std::string tolerance = "1";
+  std::string color;
   std::string engine = "fast";
   std::string statistics_path, depth_path, pose_path;
   std::string repeat = "1";

@@ -60,6 +60,7 @@ Json frameJson(std::span<const FrameStatistics> repeats) {
       {"tested", first.samples.tested}, {"written", first.samples.written}, {"shaded", first.samples.shaded}};
   json["bytes_read"] = first.bytes_read;
   json["posts_decoded"] = first.posts_decoded;
+  json["color_tiles"] = first.color_tiles;
   json["depth_complexity"] = finiteOrNull(first.depth_complexity);
   json["level"] = first.level;
   json["coarsest_level"] = first.coarsest_level;
