@@ -58,8 +58,7 @@ std::vector<TexturedCase> cases() {
   narrow.spacing_longitude = {6, 1};
   result.push_back({"cells of two different sides", {syntheticGrid(narrow)}, 2, busyColors(2)});
 
-  ProjectedGridOptions utm;
-  result.push_back({"projected", {projectedGrid(utm)}, 2, busyColors(2)});
+  result.push_back({"projected", {projectedGrid()}, 2, busyColors(2)});
 
   // A disc of colours whose rim fades over some texels.
   const GridAxis &x = country.header.x_axis, &y = country.header.y_axis;
@@ -74,21 +73,8 @@ std::vector<TexturedCase> cases() {
                       return color;
                     }});
 
-  SyntheticGridOptions inset = smallArea();
-  inset.seed = 2;
-  inset.south = 46.8 + 100.5 / 3600;
-  inset.west = -121.8 + 95.25 / 3600;
-  inset.spacing_latitude = inset.spacing_longitude = {4, 5};
-  inset.columns = 150;
-  inset.rows = 131;
-  result.push_back({"inset between the posts", {syntheticGrid(inset), country}, 2, busyColors(2)});
-  utm.columns = 131;
-  utm.rows = 113;
-  utm.spacing = 20;
-  utm.zone = 10;
-  utm.easting = 593000;
-  utm.northing = 5188000;
-  result.push_back({"projected inset", {projectedGrid(utm), country}, 2, busyColors(2)});
+  result.push_back({"inset between the posts", insetBetweenPosts(), 2, busyColors(2)});
+  result.push_back({"projected inset", projectedInset(), 2, busyColors(2)});
   return result;
 }
 

@@ -11,6 +11,10 @@ namespace deltaz {
 
 inline const std::string kTestColorMap = "summer";
 
+// Two grids that overlap, the one on top first: an inset with posts between the country's, and one in UTM.
+std::vector<RawGrid> insetBetweenPosts();
+std::vector<RawGrid> projectedInset();
+
 // A database in memory of `grids`, the one on top first, with the colour map kTestColorMap.
 MemoryDatabase makeTexturedDatabase(const std::vector<RawGrid>& grids, int leaf_cells, int finest_level,
                                     const ColorFunction& color);
