@@ -52,4 +52,13 @@ double decodeSrgb(std::uint8_t code) {
   return linearOfEncoded(code / 255.0);
 }
 
+double linearOfSrgb(std::uint8_t code) {
+  static const std::array<double, 256> table = [] {
+    std::array<double, 256> values{};
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = decodeSrgb(static_cast<std::uint8_t>(k));
+    return values;
+  }();
+  return table[code];
+}
+
 }  // namespace deltaz

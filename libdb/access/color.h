@@ -10,6 +10,11 @@ struct LinearColor {
   double red = 0, green = 0, blue = 0;
 };
 
+// A colour that covers part of what it stands on: each component times the cover, cover 0 .. 1.
+struct CoveredColor {
+  double red = 0, green = 0, blue = 0, cover = 0;
+};
+
 inline LinearColor operator+(const LinearColor& a, const LinearColor& b) {
   return {a.red + b.red, a.green + b.green, a.blue + b.blue};
 }
@@ -31,5 +36,7 @@ inline double smoothStep(double low, double high, double x) {
 std::uint8_t encodeSrgb(double linear);
 // The linear value of an sRGB code.
 double decodeSrgb(std::uint8_t code);
+// The same, from a table.
+double linearOfSrgb(std::uint8_t code);
 
 }  // namespace deltaz

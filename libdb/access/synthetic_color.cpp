@@ -29,6 +29,8 @@ constexpr LinearColor kMeadow{0.190, 0.205, 0.070};
 constexpr LinearColor kScree{0.270, 0.230, 0.190};
 constexpr LinearColor kRock{0.170, 0.145, 0.120};
 constexpr LinearColor kSnow{0.690, 0.715, 0.755};
+constexpr LinearColor kFrostedForest{0.255, 0.290, 0.310};
+constexpr LinearColor kIce{0.430, 0.500, 0.545};
 
 }  // namespace
 
@@ -69,6 +71,31 @@ LinearColor naturalColor(const SurfacePoint& point) {
 
   const double level = smoothStep(0.99990, 0.99998, point.upness);
   return mix(color, kWater, level * (1 - smoothStep(0, 1, point.height)));
+}
+
+LinearColor winterColor(const SurfacePoint& point) {
+  const double height = point.height + 500 * point.poleward;
+  const double winter_line = point.snow_line - kWinterDrop;
+  // Snow lies thin at the line and holds on slopes as in summer; under trees half of it shows.
+  const double snow =
+      smoothStep(winter_line - 200, winter_line + 400, height) * smoothStep(0.50, 0.72, point.upness);
+  const double open_height = smoothStep(point.snow_line - 1000, point.snow_line - 600, height);
+  const double level_ground = smoothStep(0.965, 0.995, point.upness) *
+                              (1 - smoothStep(0.15 * point.snow_line, 0.30 * point.snow_line + 60, height));
+  const double open = 1 - (1 - open_height) * (1 - level_ground);
+  const LinearColor white = mix(kFrostedForest, kSnow, open);
+  const LinearColor color = mix(naturalColor(point), white, snow);
+  const double water = smoothStep(0.99990, 0.99998, point.upness) * (1 - smoothStep(0, 1, point.height));
+  const double frozen = 1 - smoothStep(300, 1500, winter_line);
+  return mix(color, mix(kWater, kIce, frozen), water);
+}
+
+SurfacePoint surfacePoint(double height, const Vector3& normal, const Vector3& up, double latitude_degrees) {
+  const double across = std::hypot(up.x, up.y);
+  // North, in the plane of the axis and the vertical.
+  const Vector3 north =
+      across > 0 ? Vector3{-up.z * up.x / across, -up.z * up.y / across, across} : Vector3{-up.z, 0, 0};
+  return {height, dot(normal, up), (up.z < 0 ? -1 : 1) * dot(normal, north), snowLine(latitude_degrees)};
 }
 
 }  // namespace deltaz

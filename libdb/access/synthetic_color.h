@@ -4,6 +4,7 @@
 #pragma once
 
 #include "libdb/access/color.h"
+#include "libdb/access/vector3.h"
 
 namespace deltaz {
 
@@ -20,5 +21,14 @@ struct SurfacePoint {
 
 // Reflectance, linear.
 LinearColor naturalColor(const SurfacePoint& point);
+
+// The same country in winter: the snow line kWinterDrop lower, forest frosted above it, level water at 0 m
+// frozen where the snow comes down to it.
+inline constexpr double kWinterDrop = 2000;  // metres
+LinearColor winterColor(const SurfacePoint& point);
+
+// The point on a terrain of height `height` whose ellipsoid normal is `up` and whose surface normal is
+// `normal`, both Earth-centred unit vectors, at a latitude in degrees.
+SurfacePoint surfacePoint(double height, const Vector3& normal, const Vector3& up, double latitude_degrees);
 
 }  // namespace deltaz

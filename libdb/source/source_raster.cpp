@@ -14,6 +14,7 @@
 #include "libdb/source/source_opening.h"
 #include "libdb/source/source_placement.h"
 #include "libdb/source/source_posts.h"
+#include "libdb/source/stated_system.h"
 #include "libdb/source/usgs_dem_check.h"
 
 namespace deltaz {
@@ -148,38 +149,6 @@ Result<std::vector<std::uint8_t>> readMask(GDALDataset& dataset, GDALRasterBand&
 
 // ---- what the source says
 
-Result<ReferenceSystem> systemOf(GDALDataset& dataset, const std::string& path, const SourceOptions& options,
-                                 std::vector<std::string>& warnings) {
-  const OGRSpatialReference* const stated = dataset.GetSpatialRef();
-  if (options.crs.empty()) {
-    if (stated == nullptr) {
-      return usageError(path, "the source does not say what its coordinates refer to",
-                        "it has no coordinate reference system",
-                        "Give one with --crs, for example --crs EPSG:4326");
-    }
-  }
-  std::optional<double> epoch;
-  if (stated != nullptr && stated->GetCoordinateEpoch() > 0) epoch = stated->GetCoordinateEpoch();
-  const auto own = [&]() -> Result<ReferenceSystem> {
-    char* wkt = nullptr;
-    const std::array<const char*, 2> format = {"FORMAT=WKT2_2018", nullptr};
-    stated->exportToWkt(&wkt, format.data());
-    const std::string text = wkt == nullptr ? "" : wkt;
-    CPLFree(wkt);
-    return parseReferenceSystem(text, path, epoch);
-  };
-  if (options.crs.empty()) return own();
-  DELTAZ_TRY_ASSIGN(const ReferenceSystem given, parseReferenceSystem(options.crs, "--crs"));
-  if (stated != nullptr) {
-    const Result<ReferenceSystem> said = own();
-    if (!said.ok() || !sameHorizontalSystem(said.value(), given)) {
-      warnings.push_back(fmt::format("{}: --crs '{}' is used, although the source says '{}'", path,
-                                     given.name, said.ok() ? said.value().name : stated->GetName()));
-    }
-  }
-  return given;
-}
-
 void describeBand(GDALDataset& dataset, GDALRasterBand& band, const SourceOptions& options,
                   SourceDescription& source) {
   source.data_type = GDALGetDataTypeName(band.GetRasterDataType());
@@ -199,14 +168,6 @@ void describeBand(GDALDataset& dataset, GDALRasterBand& band, const SourceOption
   if (options.nodata) source.nodata = options.nodata;
   const char* const registration = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   source.point_registered = registration != nullptr && EQUAL(registration, GDALMD_AOP_POINT);
-}
-
-std::vector<std::string> membersOf(GDALDataset& dataset) {
-  std::vector<std::string> members;
-  if (!EQUAL(dataset.GetDriverName(), "VRT")) return members;
-  const CPLStringList names(dataset.GetFileList());
-  for (int i = 0; i < names.size(); ++i) members.emplace_back(names[i]);
-  return members;
 }
 
 void fillHeader(const ReferenceSystem& system, GDALDataset& dataset, GridHeader& header) {
@@ -240,8 +201,8 @@ Result<SourceRaster> readOpened(GDALDataset& dataset, const std::string& path, c
   if (source.scale == 0 || !std::isfinite(source.scale) || !std::isfinite(source.offset))
     return refusedSource(
         path, fmt::format("the source scales its elevations by {} and adds {}", source.scale, source.offset));
-  DELTAZ_TRY_ASSIGN(raster.system, systemOf(dataset, path, options, warnings));
-  DELTAZ_TRY_ASSIGN(source.content, hashOfContent(path, membersOf(dataset)));
+  DELTAZ_TRY_ASSIGN(raster.system, statedSystem(dataset, path, options.crs, warnings));
+  DELTAZ_TRY_ASSIGN(source.content, hashOfContent(path, membersOfVirtual(dataset)));
   fillHeader(raster.system, dataset, raster.grid.header);
   DELTAZ_TRY(placeSource(source, path, raster.system, raster.grid.header, warnings));
 

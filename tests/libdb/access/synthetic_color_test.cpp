@@ -43,5 +43,31 @@ TEST(SyntheticColor, has_no_steps) {
   }
 }
 
+TEST(SyntheticColor, winter_brings_snow_down_frosts_forest_and_freezes_water) {
+  const auto winter = [](double height, double upness, double latitude) {
+    return winterColor({height, upness, 0, snowLine(latitude)});
+  };
+  const double north = 46.85;
+  // A mountain meadow is white, forest lighter than in summer and darker than open snow, a cliff stays bare.
+  EXPECT_GT(winter(1900, 0.95, north).red, 0.6);
+  EXPECT_GT(winter(1100, 0.93, north).red, 3 * at(1100, 0.93).red);
+  EXPECT_LT(winter(1100, 0.93, north).red, 0.5);
+  EXPECT_NEAR(winter(1900, 0.3, north).red, at(1900, 0.3).red, 1e-12);
+  EXPECT_GT(winter(0, 1, 60).red, 0.3);
+  // In the tropics only the peaks change.
+  EXPECT_NEAR(winter(0, 1, 10).red, at(0, 1, 10).red, 1e-12);
+  EXPECT_NEAR(winter(1500, 0.9, 10).green, at(1500, 0.9, 10).green, 1e-12);
+}
+
+TEST(SyntheticColor, winter_has_no_steps) {
+  for (const double upness : {0.5, 0.8, 0.99}) {
+    for (double height = 10; height < 5000; height += 1) {
+      const SurfacePoint low{height, upness, 0, snowLine(46.85)},
+          high{height + 1, upness, 0, snowLine(46.85)};
+      EXPECT_NEAR(winterColor(low).green, winterColor(high).green, 0.01) << height << " " << upness;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace deltaz
