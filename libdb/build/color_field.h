@@ -8,13 +8,9 @@
 #include <span>
 
 #include "formats/error.h"
+#include "libdb/access/color.h"
 
 namespace deltaz {
-
-// Linear light, 1 = white, each times the cover; cover 0 .. 1.
-struct CoveredColor {
-  double red = 0, green = 0, blue = 0, cover = 0;
-};
 
 // A rectangle of texels of one level over a grid. Texel (i, j) has its centre at i + 0.5, j + 0.5 times the
 // side of a texel, in level-0 posts of the grid (colorTexelCells of libdb/access/color_map.h).

@@ -83,6 +83,13 @@ Status ColorMapWriter::add(const ColorPlace& place, std::span<const std::byte> t
   return Success{};
 }
 
+std::pair<int, int> ColorMapWriter::levels() const {
+  const auto [finest, coarsest] =
+      std::minmax_element(places_.begin(), places_.end(),
+                          [](const ColorPlace& a, const ColorPlace& b) { return a.level < b.level; });
+  return {finest->level, coarsest->level};
+}
+
 Result<FileIdentity> ColorMapWriter::finish() {
   const PlaceIndex index(places_);
   if (index.hasTwice()) return internalError(path_, "a node of the colour map was written twice");

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/color_file.h"
@@ -36,6 +37,8 @@ class ColorMapWriter {
   // but those of its grid's coarsest level with its parent.
   Status add(const ColorPlace& place, std::span<const std::byte> tile);
   std::size_t count() const { return places_.size(); }
+  // The lowest and the highest level so far. Pre: a node was added.
+  std::pair<int, int> levels() const;
   // Bytes written so far.
   std::uint64_t size() const { return file_.size(); }
   // Links the nodes and closes the file. Nothing may follow.

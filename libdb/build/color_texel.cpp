@@ -7,15 +7,6 @@
 
 namespace deltaz {
 
-double linearOfCode(std::uint8_t code) {
-  static const std::array<double, 256> table = [] {
-    std::array<double, 256> values{};
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = decodeSrgb(static_cast<std::uint8_t>(k));
-    return values;
-  }();
-  return table[code];
-}
-
 Texel storedTexel(const CoveredColor& color) {
   const double cover = std::clamp(color.cover, 0.0, 1.0);
   const auto code = static_cast<std::uint8_t>(std::floor(cover * 255 + 0.5));
@@ -32,7 +23,7 @@ Texel meanTexel(const Texel& sw, const Texel& se, const Texel& nw, const Texel& 
   for (std::size_t band = 0; band < 3; ++band) {
     // Equal codes stay themselves, whatever the rounding of the sums.
     double sum = 0;
-    for (const Texel* texel : {&sw, &se, &nw, &ne}) sum += (*texel)[3] * linearOfCode((*texel)[band]);
+    for (const Texel* texel : {&sw, &se, &nw, &ne}) sum += (*texel)[3] * linearOfSrgb((*texel)[band]);
     mean[band] = encodeSrgb(sum / total);
   }
   return mean;

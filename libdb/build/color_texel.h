@@ -12,9 +12,6 @@ namespace deltaz {
 // Red, green, blue (sRGB codes), cover (0 .. 255).
 using Texel = std::array<std::uint8_t, 4>;
 
-// The linear value of an sRGB code, from a table.
-double linearOfCode(std::uint8_t code);
-
 // Rounded to the nearest codes; a texel whose cover rounds to 0 is {0, 0, 0, 0}.
 Texel storedTexel(const CoveredColor& color);
 
