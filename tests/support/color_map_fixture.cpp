@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "libdb/access/color.h"
 #include "libdb/access/color_map.h"
 #include "libdb/build/color_map_edit.h"
 #include "libdb/build/color_pyramid.h"
@@ -27,8 +28,8 @@ class FunctionField final : public ColorField {
             color_(block.grid, (static_cast<double>(block.first_column + column) + 0.5) * texel,
                    (static_cast<double>(block.first_row + row) + 0.5) * texel);
         const double cover = code[3] / 255.0;
-        colors[k++] = {cover * linearOfCode(code[0]), cover * linearOfCode(code[1]),
-                       cover * linearOfCode(code[2]), cover};
+        colors[k++] = {cover * linearOfSrgb(code[0]), cover * linearOfSrgb(code[1]),
+                       cover * linearOfSrgb(code[2]), cover};
       }
     }
     return Success{};

@@ -20,5 +20,7 @@ std::unique_ptr<Command> makeTerrainCommand(CLI::App& parent);
 std::unique_ptr<Command> makeInfoCommand(CLI::App& parent);
 std::unique_ptr<Command> makeExportCommand(CLI::App& parent);
 std::unique_ptr<Command> makeRunCommand(CLI::App& parent);
+std::unique_ptr<Command> makeColorCommand(CLI::App& parent);
+std::unique_ptr<Command> makeGcCommand(CLI::App& parent);
 
 }  // namespace deltaz

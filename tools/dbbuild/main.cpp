@@ -1,5 +1,5 @@
 // dbbuild: makes databases from DEMs, says what is in them, and gives the DEM back. See dbbuild(1).
-#include <array>
+#include <vector>
 
 #include "tools/dbbuild/command.h"
 
@@ -14,13 +14,20 @@ int main(int argc, char** argv) {
         "Exit codes: 0 done; 1 content refused or damaged; 2 usage, target exists; 3 cannot read, write or "
         "lock;\n"
         "4 newer format; 70 internal error. See dbbuild(1).");
-    const std::array<std::unique_ptr<Command>, 4> commands = {makeTerrainCommand(app), makeRunCommand(app),
-                                                              makeInfoCommand(app), makeExportCommand(app)};
+    std::vector<std::unique_ptr<Command>> commands;
+    commands.push_back(makeTerrainCommand(app));
+    commands.push_back(makeColorCommand(app));
+    commands.push_back(makeRunCommand(app));
+    commands.push_back(makeInfoCommand(app));
+    commands.push_back(makeExportCommand(app));
+    commands.push_back(makeGcCommand(app));
     if (const auto code = parseCommandLine(app, "dbbuild", argc, argv)) return *code;
     for (const auto& command : commands) {
       if (command->app().parsed()) return command->run();
     }
-    return usageError("command line", "a subcommand is required: terrain, run, info or export", {},
+    std::string names;
+    for (const auto& command : commands) names += (names.empty() ? "" : ", ") + command->app().get_name();
+    return usageError("command line", "a subcommand is required, one of " + names, {},
                       "See 'dbbuild --help'");
   });
 }
