@@ -7,15 +7,20 @@
 #include <string>
 
 #include "formats/area.h"
+#include "formats/color_file.h"
 #include "formats/container.h"
 #include "formats/delta_codec.h"
+#include "formats/model_file.h"
 #include "formats/node_file.h"
+#include "formats/placement_file.h"
 #include "formats/terrain_segment.h"
 #include "libdb/access/database.h"
 #include "libdb/check/check.h"
 #include "libdb/export/export_terrain.h"
+#include "tests/support/asset_editor.h"
 #include "tests/support/container_surgery.h"
 #include "tests/support/database_editor.h"
+#include "tests/support/furnished_area.h"
 #include "tests/support/synthetic_grid.h"
 
 namespace deltaz {
@@ -208,6 +213,104 @@ std::vector<FuzzInput> codecSeeds() {
   return {input};
 }
 
+// ---- colour maps, models, placements: the first byte says which block it is
+
+constexpr std::uint32_t kBlocks = 4;
+
+// A decoder that refuses, or reads what has one form.
+template <typename Decoded, typename Encode>
+void expectOneForm(const Decoded& decoded, std::span<const std::byte> input, Encode encode) {
+  if (!decoded.ok()) return;
+  const std::vector<std::byte> bytes = encode(decoded.value());
+  promise(bytes.size() == input.size() && std::equal(bytes.begin(), bytes.end(), input.begin()),
+          "what is read has one form");
+}
+
+void fuzzColorFile(std::span<const std::byte> input) {
+  if (input.empty()) return;
+  const auto rest = input.subspan(1);
+  switch (std::to_integer<unsigned>(input[0]) % 3) {
+    case 0:
+      return expectOneForm(decodeColorDirectory(rest, kBlocks, "directory"), rest, encodeColorDirectory);
+    case 1:
+      return expectOneForm(decodeColorPage(rest, "page"), rest,
+                           [](const std::vector<ColorNode>& nodes) { return encodeColorPage(nodes); });
+    default:
+      const auto texels = decodeColorTile(rest, "tile");
+      if (!texels.ok()) return;
+      promise(texels.value().size() == kColorTileBytes, "a tile has all its texels");
+      const auto again = decodeColorTile(encodeColorTile(texels.value()), "tile");
+      promise(again.ok() && again.value() == texels.value(), "texels survive");
+  }
+}
+
+std::vector<FuzzInput> colorFileSeeds() {
+  ColorDirectory directory;
+  directory.node_count = directory.first_page = 2;
+  directory.trees = {{0, 1, 1, 3, -2}, {5, 2, 1, 4, 4}};
+  const std::vector<ColorNode> nodes = {{0, 3, 15, -1, 2, 2, 0}, {5, 4, 0, 0, 0, 0, 1}};
+  std::vector<std::uint8_t> texels(kColorTileBytes);
+  for (std::size_t k = 0; k < texels.size(); ++k)
+    texels[k] = static_cast<std::uint8_t>(k % 4 == 3 ? 255 - k / 400 % 2 : k / 9 % 256);
+  return {inputOf(0, encodeColorDirectory(directory)), inputOf(1, encodeColorPage(nodes)),
+          inputOf(2, encodeColorTile(texels))};
+}
+
+void fuzzModelFile(std::span<const std::byte> input) {
+  if (input.empty()) return;
+  const auto rest = input.subspan(1);
+  if (std::to_integer<unsigned>(input[0]) % 2 == 0)
+    return expectOneForm(decodeModelTree(rest, kBlocks, "tree"), rest, encodeModelTree);
+  const auto mesh = decodeModelMesh(rest, "mesh");
+  expectOneForm(mesh, rest, encodeModelMesh);
+  if (!mesh.ok()) return;
+  for (const auto& triangle : mesh.value().triangles) {
+    for (const std::uint32_t index : triangle)
+      promise(index < mesh.value().vertices.size(), "triangles name vertices");
+  }
+}
+
+std::vector<FuzzInput> modelFileSeeds() {
+  ModelTree tree;
+  tree.radius = 5;
+  tree.parts.resize(2);
+  tree.parts[0].name = "body";
+  tree.parts[0].lods = {{0, 12, 0}, {1, 4, 0.5f}};
+  tree.parts[1].name = "rotor";
+  tree.parts[1].parent = 0;
+  tree.parts[1].lods = {{2, 1, 0}};
+  ModelMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.colors = {{1, 2, 3}, {4, 5, 6}};
+  ModelMesh shaded = mesh;
+  shaded.colored_by_vertex = shaded.two_sided = true;
+  shaded.normals.assign(4, {0, 0, 32767});
+  shaded.colors.resize(4);
+  return {inputOf(0, encodeModelTree(tree)), inputOf(1, encodeModelMesh(mesh)),
+          inputOf(1, encodeModelMesh(shaded))};
+}
+
+void fuzzPlacementFile(std::span<const std::byte> input) {
+  if (input.empty()) return;
+  const auto rest = input.subspan(1);
+  if (std::to_integer<unsigned>(input[0]) % 2 == 0)
+    return expectOneForm(decodePlacementDirectory(rest, kBlocks, "directory"), rest,
+                         encodePlacementDirectory);
+  expectOneForm(decodePlacementPage(rest, 2, "page"), rest,
+                [](const std::vector<Placement>& placements) { return encodePlacementPage(placements); });
+}
+
+std::vector<FuzzInput> placementFileSeeds() {
+  PlacementDirectory directory;
+  directory.count = 2 * kPlacementsPerPage + 1;
+  directory.next_instance = 200;
+  directory.pages = {{{1e6, -2e6, 3e6}, 10}, {{1e6, -2e6, 3e6}, 20}, {{0, 0, 6e6}, 0}};
+  const std::vector<Placement> placements = {{1, 0, 46.5, -121.5, 1000, 90, false, 0},
+                                             {199, 1, -46.5, 21.5, 1000, 0, true, 1.5}};
+  return {inputOf(0, encodePlacementDirectory(directory)), inputOf(1, encodePlacementPage(placements))};
+}
+
 // ---- a whole database: the input is a list of edits of four bytes (file, place, place, value), sealed
 // afterwards
 
@@ -277,6 +380,59 @@ void fuzzDatabase(std::span<const std::byte> input) {
   }
 }
 
+// The same edits to what colours or stands on the terrain.
+void fuzzFurnished(std::span<const std::byte> input) {
+  MemoryFileSystem files = furnishedArea();
+  static constexpr std::array kRoles = {FileRole::kColors, FileRole::kModel, FileRole::kPlacements};
+  for (std::size_t i = 0; i + kEditBytes <= std::min<std::size_t>(input.size(), 64 * kEditBytes);
+       i += kEditBytes) {
+    const std::size_t place =
+        std::to_integer<std::size_t>(input[i + 1]) * 256 + std::to_integer<std::size_t>(input[i + 2]);
+    const FileRole role = kRoles[std::to_integer<std::size_t>(input[i]) % kRoles.size()];
+    editPayloads(files.mutableBytes(assetPath(files, role)), place, input[i + 3]);
+  }
+  AreaHeader area = areaOf(files);
+  for (FileReference& file : area.files) {
+    FileBytes& bytes = files.mutableBytes(kMemoryDatabasePath + "/" + file.name);
+    sealAll(bytes);
+    file.id = identityOf(bytes).id;
+  }
+  setArea(files, area);
+
+  CheckOptions options;
+  options.threads = 1;
+  options.level = CheckLevel::kGeometry;
+  const Report report = checkDatabase(files, kMemoryDatabasePath, options);
+  promise(!report.fatal, "damaged colours and models make no rule fail");
+  const bool clean = report.complete && report.count(Severity::kError) == 0;
+  const auto database = Database::open(files, kMemoryDatabasePath);
+  promise(database.ok() || !clean, "what the check calls valid can be opened");
+  if (!database.ok()) return;
+  for (const ColorMap& map : database.value().colorMaps()) {
+    for (std::uint32_t number = 1; number <= map.directory().node_count; ++number) {
+      const auto node = map.record(number);
+      promise((node.ok() && map.tile(node.value()).ok()) || !clean,
+              "what the check calls valid has its tiles");
+    }
+    for (const int level : {-40, 3, 60}) {
+      const GridHeader& grid = database.value().area().grids[0];
+      promise(map.nodeAt(0, static_cast<double>(grid.x_axis.first + 3),
+                         static_cast<double>(grid.y_axis.first + 3), level)
+                      .ok() ||
+                  !clean,
+              "what the check calls valid can be walked");
+    }
+  }
+  for (const Model& model : database.value().models()) {
+    for (const ModelPart& part : model.tree().parts) {
+      for (const ModelLod& lod : part.lods)
+        promise(model.mesh(lod).ok() || !clean, "what the check calls valid has its meshes");
+    }
+  }
+  if (const PlacementSet* placements = database.value().placements(); placements != nullptr)
+    promise(placements->all().ok() || !clean, "what the check calls valid has its placements");
+}
+
 std::vector<FuzzInput> databaseSeeds() {
   FuzzInput edits;
   for (int i = 0; i < 3; ++i) {
@@ -294,7 +450,11 @@ std::span<const FuzzTarget> fuzzTargets() {
       FuzzTarget{"node_page", fuzzNodePage, nodePageSeeds},
       FuzzTarget{"terrain_block", fuzzTerrainBlock, terrainBlockSeeds},
       FuzzTarget{"codec", fuzzCodec, codecSeeds},
+      FuzzTarget{"color_file", fuzzColorFile, colorFileSeeds},
+      FuzzTarget{"model_file", fuzzModelFile, modelFileSeeds},
+      FuzzTarget{"placement_file", fuzzPlacementFile, placementFileSeeds},
       FuzzTarget{"database", fuzzDatabase, databaseSeeds},
+      FuzzTarget{"furnished", fuzzFurnished, databaseSeeds, 15},
   };
   return kTargets;
 }

@@ -19,6 +19,8 @@ struct FuzzTarget {
   void (*run)(std::span<const std::byte> input);
   // Small sound inputs to start from.
   std::vector<FuzzInput> (*seeds)();
+  // What a run costs, in terms of others: the test replays so many mutations less.
+  int cost = 1;
 };
 
 std::span<const FuzzTarget> fuzzTargets();
