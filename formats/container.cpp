@@ -261,6 +261,15 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
           fmt::format("block {} lies outside the file's blocks", page_number * kIndexEntriesPerPage + i), {},
           kDamaged);
     }
+    // Two entries exchanged would hand out two intact blocks as each other.
+    const BlockLocation* before = page.empty() ? nullptr : &page.back();
+    if (before != nullptr ? block.offset != roundUpToAlignment(before->offset + before->length)
+                          : page_number == 0 && block.offset != kContainerHeaderBytes) {
+      return invalidError(
+          IssueCode::kIdxOrder, path_,
+          fmt::format("block {} does not follow the one before it", page_number * kIndexEntriesPerPage + i),
+          {}, kDamaged);
+    }
     page.push_back(block);
   }
   const std::lock_guard guard(cache_->mutex);
