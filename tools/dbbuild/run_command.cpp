@@ -31,6 +31,7 @@ struct SectionSource {
 const std::vector<SectionSource>& sectionSources() {
   static const std::vector<SectionSource> sources = {
       {"terrain", makeTerrainCommand, false, {{"sources", KeyKind::kList, true, true, true}}, {}, {}},
+      {"color", makeColorCommand, true, {}, {"image", "ramp", "classes", "legend"}, {"remove"}},
   };
   return sources;
 }
