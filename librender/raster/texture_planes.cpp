@@ -21,7 +21,11 @@ TexturePlanes texturePlanes(const FacePlanes& face) {
 }
 
 double TextureFootprint::size() const {
-  return std::max(std::hypot(per_j.column, per_j.row), std::hypot(per_i.column, per_i.row));
+  // Not std::hypot, whose last digit is the library's.
+  const auto squared = [](const GridCoordinates& step) {
+    return step.column * step.column + step.row * step.row;
+  };
+  return std::sqrt(std::max(squared(per_j), squared(per_i)));
 }
 
 TextureFootprint footprintAt(const FacePlanes& face, int j, int i, double inverse_u) {

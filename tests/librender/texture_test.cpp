@@ -58,6 +58,11 @@ std::vector<TexturedCase> cases() {
   narrow.spacing_longitude = {6, 1};
   result.push_back({"cells of two different sides", {syntheticGrid(narrow)}, 2, busyColors(2)});
 
+  SyntheticGridOptions pole = smallArea();
+  pole.south = 89.9;
+  pole.west = 179.5;  // and across the antimeridian
+  pole.spacing_longitude = {30, 1};
+  result.push_back({"at the pole", {syntheticGrid(pole)}, 2, busyColors(2)});
   result.push_back({"projected", {projectedGrid()}, 2, busyColors(2)});
 
   // A disc of colours whose rim fades over some texels.
