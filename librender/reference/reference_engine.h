@@ -1,5 +1,5 @@
-// The judge: double precision, every full-resolution triangle of the database, nothing skipped but back
-// faces, and short enough to be believed by reading.
+// The judge: double precision, every full-resolution triangle of the database and of every placed model,
+// nothing skipped but back faces, and short enough to be believed by reading.
 //
 // Positions are GeographicLib's. A pixel is covered if the ray through its centre p = (1, j - centre_j, i -
 // centre_i) has the same sign of p . (Vi x Vj) for all three edges: exact homogeneous edge functions, with no

@@ -30,8 +30,9 @@ struct RenderOptions {
   Camera camera;
   Sun sun;
   double tolerance = 1.0;  // pixels; 0 draws full resolution
-  int fixed_level = -1;    // >= 0: draw this level whatever the tolerance (tests and benches)
-  int threads = 0;         // 0: as many as the machine has
+  // >= 0: draw this level, of terrain and of models, whatever the tolerance (tests and benches).
+  int fixed_level = -1;
+  int threads = 0;  // 0: as many as the machine has
   // Name of the colour map; empty for the database's first, kNoColorMap (or no map at all) for colours by
   // rule (libdb/access/synthetic_color.h), which also show where a map has no cover.
   std::string color_map;

@@ -43,8 +43,10 @@ Result<Json> parseStrictly(std::string_view text, const std::string& where) {
     Json json = Json::parse(text, look);
     if (!twice.empty()) return bad(where, fmt::format("the member \"{}\" stands twice in one object", twice));
     return json;
-  } catch (const std::exception& error) {
-    return bad(where, "this is no JSON", error.what());
+  } catch (const Json::parse_error& error) {
+    return bad(where, "this is no JSON", fmt::format("it makes no sense at byte {}", error.byte));
+  } catch (const std::exception&) {
+    return bad(where, "this is no JSON");
   }
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "libdb/access/model.h"
+#include "tests/support/model_fixture.h"
+#include "tests/support/synthetic_grid.h"
 
 namespace deltaz {
 namespace {
@@ -95,6 +97,39 @@ TEST(PoseFile, nothing_may_be_said_twice) {
   EXPECT_EQ(parsed(R"({"poses": [{"model": "a", "part": "b"}, {"model": "a", "part": "b", "instance": 2}]})")
                 .size(),
             2u);
+}
+
+// A tower is instance 1, a mast, which is built alike, instance 2.
+Database towers() {
+  MemoryFileSystem files = buildInMemory(syntheticGrid());
+  addFixtureModel(files, kMemoryDatabasePath);
+  addFixtureModel(files, kMemoryDatabasePath, "mast");
+  std::vector<Placement> placements = {placementAt(43.5, -79.5, 100), placementAt(43.5, -79.4, 100)};
+  placements[1].model = 1;
+  setPlacements(files, kMemoryDatabasePath, placements);
+  return Database::open(files, kMemoryDatabasePath).value();
+}
+
+TEST(PoseFile, models_parts_and_instances_must_be_there) {
+  const Database database = towers();
+  const auto check = [&](const PartPose& pose) {
+    const Status status = checkPoses(database, {pose}, "poses.json");
+    if (status.ok()) return std::string();
+    EXPECT_EQ(exitCode(status.error().kind), 2);
+    EXPECT_EQ(status.error().where, "poses.json");
+    return status.error().message();
+  };
+  const auto refuses = [&](const PartPose& pose, const std::string& words) {
+    const std::string message = check(pose);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  EXPECT_EQ(check({"tower", "head", std::nullopt, kIdentityTransform}), "");
+  EXPECT_EQ(check({"tower", "head", 1, kIdentityTransform}), "");
+  EXPECT_EQ(check({"mast", "base", 2, kIdentityTransform}), "");
+  refuses({"towre", "head", std::nullopt, kIdentityTransform}, "near it: \"tower\"");
+  refuses({"tower", "hed", std::nullopt, kIdentityTransform}, "near it: \"head\"");
+  refuses({"tower", "head", 2, kIdentityTransform}, "instance 2 is a \"mast\"");
+  refuses({"tower", "head", 3, kIdentityTransform}, "nothing is placed as instance 3");
 }
 
 }  // namespace
