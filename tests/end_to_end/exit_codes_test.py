@@ -195,5 +195,22 @@ def a_broken_area_json_is_invalid(folder):
     require("invalid" in ended.out.splitlines()[0], ended)
 
 
+@case
+def a_file_of_poses_that_is_none_is_refused(folder):
+    area, poses = build(folder), folder / "poses.json"
+    command = ["dbview", area, "-o", folder / "x.png", "--size", "40x30", "--pose", poses]
+    run(*command, expect=3, words=["poses.json"])
+    for text, code, words in [
+            ("{", 1, ["no JSON", "byte"]), ("[]", 1, ["no object"]), ('{"pose": []}', 1, ["near it", '"poses"']),
+            ('{"poses": [{"model": "tower", "part": "head", "rotat": 1}]}', 1, ["poses[0]", '"rotate"']),
+            ('{"poses": [{"model": "tower", "part": "head", "scale": NaN}]}', 1, ["no JSON"]),
+            ('{"poses": [{"model": "tower", "part": "head"}]}', 2, ["poses.json", '"tower"', "there are none"])]:
+        poses.write_text(text)
+        run(*command, expect=code, words=words)
+        require(not (folder / "x.png").exists(), text)
+    poses.write_text('{"poses": []}')
+    run(*command)
+
+
 if __name__ == "__main__":
     main()
