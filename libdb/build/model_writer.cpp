@@ -81,6 +81,18 @@ std::optional<std::uint32_t> findModel(const AreaHeader& area, const std::string
   return std::nullopt;
 }
 
+Status checkName(const std::string& name) {
+  if (isAssetName(name)) return Success{};
+  return usageError(name, "this cannot name a model", "names are 1 to 64 of A-Z a-z 0-9 _ - and dots within",
+                    "Choose another name");
+}
+
+Status checkFree(const AreaHeader& area, const std::string& name, bool overwrite) {
+  if (overwrite || !findModel(area, name)) return Success{};
+  return usageError(name, "the database has a model of this name", {},
+                    "Choose another name or give --overwrite");
+}
+
 // Where a reference to model `number` belongs: models are listed in their order.
 std::vector<FileReference>::iterator placeOfModel(AreaHeader& area, std::uint32_t number) {
   return std::find_if(area.files.begin(), area.files.end(), [&](const FileReference& file) {
@@ -122,19 +134,20 @@ ModelTree modelTreeOf(const FinishedModel& model) {
   return tree;
 }
 
+Status checkModelTarget(const FileSystem& files, const std::string& target, const std::string& name,
+                        bool overwrite) {
+  DELTAZ_TRY(checkName(name));
+  DELTAZ_TRY_ASSIGN(const Database database, Database::open(files, target));
+  return checkFree(database.area(), name, overwrite);
+}
+
 Status putModel(const FileSystem& files, const std::string& target, const AssetHeader& header,
                 const FinishedModel& model, bool overwrite) {
-  if (!isAssetName(header.name)) {
-    return usageError(header.name, "this cannot name a model",
-                      "names are 1 to 64 of A-Z a-z 0-9 _ - and dots within", "Choose another name");
-  }
+  DELTAZ_TRY(checkName(header.name));
   DELTAZ_TRY_ASSIGN(Publication publication, Publication::beginEdit(files, target));
   AreaHeader area = publication.area();
+  DELTAZ_TRY(checkFree(area, header.name, overwrite));
   const std::optional<std::uint32_t> existing = findModel(area, header.name);
-  if (existing && !overwrite) {
-    return usageError(header.name, "the database has a model of this name", {},
-                      "Choose another name or give --overwrite");
-  }
   DELTAZ_TRY_ASSIGN(PlacedModels placed, readPlacedModels(files, target));
   const ModelTree tree = modelTreeOf(model);
   // Nothing is published that a reader would refuse.

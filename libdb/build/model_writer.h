@@ -36,6 +36,10 @@ struct FinishedModel {
 // parts and their levels of detail.
 ModelTree modelTreeOf(const FinishedModel& model);
 
+// What putModel would refuse at once, whatever the model.
+Status checkModelTarget(const FileSystem& files, const std::string& target, const std::string& name,
+                        bool overwrite);
+
 // `header.name` must be isAssetName. With `overwrite` a model of that name is replaced.
 Status putModel(const FileSystem& files, const std::string& target, const AssetHeader& header,
                 const FinishedModel& model, bool overwrite);

@@ -17,6 +17,8 @@ class Command {
 
 // Each adds its subcommand to `parent`, which must outlive it.
 std::unique_ptr<Command> makeTerrainCommand(CLI::App& parent);
+std::unique_ptr<Command> makeModelCommand(CLI::App& parent);
+std::unique_ptr<Command> makePlaceCommand(CLI::App& parent);
 std::unique_ptr<Command> makeInfoCommand(CLI::App& parent);
 std::unique_ptr<Command> makeExportCommand(CLI::App& parent);
 std::unique_ptr<Command> makeRunCommand(CLI::App& parent);

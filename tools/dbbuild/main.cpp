@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
     std::vector<std::unique_ptr<Command>> commands;
     commands.push_back(makeTerrainCommand(app));
     commands.push_back(makeColorCommand(app));
+    commands.push_back(makeModelCommand(app));
+    commands.push_back(makePlaceCommand(app));
     commands.push_back(makeRunCommand(app));
     commands.push_back(makeInfoCommand(app));
     commands.push_back(makeExportCommand(app));
