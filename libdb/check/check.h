@@ -2,12 +2,15 @@
 //
 // Levels, each including the ones before it:
 //   structure  area.json, file lengths and identities, headers, footers, block index, the tree of node
-//   records checksum   every block against its checksum, file identities against contents, padding decode
-//   every node's terrain: it decodes, agrees with its record, its parent's posts and its
-//              neighbours' ring
+//              records; trees of colour maps and models, transforms, numbers of placements
+//   checksum   every block against its checksum, file identities against contents, padding
+//   decode     every node's terrain: it decodes, agrees with its record, its parent's posts and its
+//              neighbours' ring; texels against borders and means; meshes and placements against spheres
+//              and the ground
 //   geometry   what the database says of its own accuracy, recomputed in other ways than the builder's:
-//              geometric, RMS and coverage errors, normal cones and normals, control points, LOD ranges.
-//              Needs the full-resolution posts in memory, five bytes a post of a grid
+//              geometric, RMS and coverage errors, normal cones and normals, control points, LOD ranges,
+//              errors of models' coarser meshes. Needs the full-resolution posts in memory, five bytes a
+//              post of a grid
 // `against` adds a comparison with the sources, post for post.
 //
 // A damaged database never makes a check crash or stop early without saying so (Report::complete).

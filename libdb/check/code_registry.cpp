@@ -271,38 +271,38 @@ constexpr std::array kRegistry = {
         IssueCode::kModelTree, kError, kStructure, "the tree of a model is wrong",
         "A part has no parent that stands before it, names a mesh that is not there, or has a name "
         "or a number that cannot be.",
-        kRebuildModel, "model_file.md 2"},
+        kRebuildModel, "model_file.md 1"},
     CodeDescription{IssueCode::kModelMesh, kError, kDecode, "a mesh of a model is wrong",
                     "Its counts do not fit its length or its part, or a triangle names a vertex that is not "
                     "there.",
-                    kRebuildModel, "model_file.md 3"},
+                    kRebuildModel, "model_file.md 2"},
     CodeDescription{IssueCode::kModelSphere, kError, kDecode, "a model's sphere does not hold its meshes",
                     "A vertex lies outside the sphere of its part or of the model, so that it may be missing "
                     "in pictures that should show it.",
-                    kRebuildModel, "model_file.md 2"},
+                    kRebuildModel, "model_file.md 1"},
     CodeDescription{
         IssueCode::kModelError, kError, kGeometry, "a model's level of detail has a wrong error",
         "The distance between a part's coarser mesh and its finest one was measured anew. The stored "
         "one is too small, so that a picture is less exact than its tolerance says, or far too large.",
-        kRebuildModel, "model_file.md 4"},
+        kRebuildModel, "model_file.md 1"},
     CodeDescription{IssueCode::kModelLod, kError, kDecode, "a model's levels of detail are not in order",
                     "A coarser level has more triangles than a finer one, or a smaller error; the finest has "
                     "error 0.",
-                    kRebuildModel, "model_file.md 4"},
+                    kRebuildModel, "model_file.md 1"},
     CodeDescription{IssueCode::kModelTransform, Severity::kWarning, kStructure,
                     "a part's transform is more than rotation and one scale",
                     "Light is computed in a part's own space, which is right only where the transform keeps "
                     "angles: this part is lit wrongly.",
-                    "Apply the transform to the mesh before it is made a model.", "model_file.md 2"},
+                    "Apply the transform to the mesh before it is made a model.", "model_file.md 1"},
     CodeDescription{IssueCode::kPlacementRecord, kError, kStructure, "a placement is wrong",
                     "It names a model that is not there, has a number that another has or that was never "
                     "given, or a position that cannot be.",
-                    "Place the models anew (dbbuild place).", "placement_file.md 2"},
+                    "Place the models anew (dbbuild place).", "placement_file.md 1"},
     CodeDescription{IssueCode::kPlacementSphere, kError, kDecode,
                     "a page's sphere does not hold what stands on it",
                     "A model reaches out of the sphere of its page, so that it may be missing in pictures "
                     "that should show it.",
-                    "Place the models anew (dbbuild place).", "placement_file.md 3"},
+                    "Place the models anew (dbbuild place).", "placement_file.md 1"},
     CodeDescription{IssueCode::kPlacementGround, Severity::kWarning, kDecode,
                     "a model does not stand on the ground",
                     "It was placed in relation to the ground, and the ground is elsewhere: the terrain was "

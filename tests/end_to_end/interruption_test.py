@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import time
 
-from harness import RAINIER, case, main, no_leftovers, program, require, run, small_dem
+from harness import RAINIER, build, case, main, no_leftovers, program, require, run, small_dem
 
 KILLS = int(os.environ.get("DELTAZ_KILLS", "20"))
 SEED = os.environ.get("DELTAZ_KILL_SEED", str(time.time_ns()))
@@ -83,6 +83,71 @@ def a_killed_overwrite_leaves_the_old_or_the_new_state(folder):
     listed = {file["name"] for file in run("dbbuild", "info", target, "--json").json()["files"]}
     left = {file.name for file in target.iterdir()} - listed - {"area.json", "lock"}
     require(not left, f"the next run left {left}")
+
+
+def hills(folder):
+    """A mesh that takes a while to simplify."""
+    side, lines = 80, []
+    for row in range(side):
+        lines += [f"v {column} {row} {(column * row * 37 + 11 * column) % 17 / 8}" for column in range(side)]
+    for row in range(side - 1):
+        for column in range(1, side):
+            corner = row * side + column
+            lines += [f"f {corner} {corner + 1} {corner + side + 1}", f"f {corner} {corner + side + 1} {corner + side}"]
+    mesh = folder / "hills.obj"
+    mesh.write_text("\n".join(lines) + "\n")
+    return mesh
+
+
+def state_of(area):
+    """The generation of what is published."""
+    return run("dbbuild", "info", area, "--json").json()["generation"]
+
+
+def killed_edit(folder, name, base, command):
+    """Kills command(area) again and again, each time on a fresh copy of `base`."""
+    print(f"seed {SEED}, {KILLS} kills of {name}")
+    moments = random.Random(SEED + name)
+    area = folder / f"{name}.dz"
+    shutil.copytree(base, area)
+    digest, old = run("dbbuild", "info", area, "--digest").out, state_of(area)
+    whole = duration([program("dbbuild"), *command(area)])
+    new = state_of(area)
+    require(new > old, "the edit made no new state")
+    found = {old: 0, new: 0}
+    for _ in range(KILLS):
+        shutil.rmtree(area)
+        shutil.copytree(base, area)
+        killed_after(moments.uniform(0, 1.05 * whole), [program("dbbuild"), *command(area)])
+        run("dbcheck", area)
+        require(run("dbbuild", "info", area, "--digest").out == digest, "the terrain is another")
+        state = state_of(area)
+        require(state in found, f"state {state} is neither the old nor the new one")
+        found[state] += 1
+        if state == old:
+            run("dbbuild", *command(area))
+            run("dbcheck", area)
+        run("dbbuild", "gc", area)
+        listed = {file["name"] for file in run("dbbuild", "info", area, "--json").json()["files"]}
+        left = {file.name for file in area.iterdir()} - listed - {"area.json", "lock"}
+        require(not left, f"gc left {left}")
+    print(found)
+    require(found[old] > 0, "no kill came before the end")
+
+
+@case
+def a_killed_colour_map_leaves_the_old_or_the_new_state(folder):
+    base = folder / "base.dz"
+    run("dbbuild", "terrain", RAINIER, "-o", base)
+    killed_edit(folder, "color", base, lambda area: ["color", area, "--name", "summer", "--synthetic", "natural", "-q"])
+
+
+@case
+def a_killed_model_or_placement_leaves_the_old_or_the_new_state(folder):
+    base, mesh = build(folder, None, "base.dz"), hills(folder)
+    killed_edit(folder, "model", base, lambda area: ["model", area, mesh, "--name", "hills", "-q"])
+    run("dbbuild", "model", base, mesh, "--name", "hills")
+    killed_edit(folder, "place", base, lambda area: ["place", area, "hills", "--at", "46.1,7.1", "-q"])
 
 
 @case
