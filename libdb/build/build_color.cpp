@@ -148,16 +148,27 @@ class ColorBuild {
     return std::unique_ptr<ColorField>(std::move(field));
   }
 
-  // The level --texel asks for; none: as fine as the field is.
-  std::optional<int> lastLevel(const GridGeometry& geometry) const {
-    if (!options_.texel) return std::nullopt;
+  // The level --texel asks for; none: as fine as the field is. kUsage if that would be more than a file
+  // holds.
+  Result<std::optional<int>> lastLevel(const GridGeometry& geometry) const {
+    if (!options_.texel) return std::optional<int>();
     // A size that is meant to be the cell's is not to fail by a rounding.
     constexpr double kAbout = 1 + 1e-6;
     const double cells = wantedCells(geometry, *options_.texel) * kAbout;
     const int leaf = geometry.header().leaf_cells;
     int level = colorRootLevel(geometry.header()) + kColorFarLevels;
     while (level > kLowestColorLevel && colorTexelCells(leaf, level) > cells) --level;
-    return level;
+    constexpr double kMostTiles = 1 << 22;
+    const double node = colorNodeCells(leaf, level);
+    const double tiles = static_cast<double>(geometry.header().x_axis.count) / node *
+                         static_cast<double>(geometry.header().y_axis.count) / node;
+    if (tiles > kMostTiles || colorTexelCells(leaf, level) > cells) {
+      return usageError(
+          "--texel", "the area would have too many texels of this size",
+          fmt::format("it has {} x {} posts", geometry.header().x_axis.count, geometry.header().y_axis.count),
+          "Give a larger one");
+    }
+    return std::optional<int>(level);
   }
 
   Status fill(const Database& database, ColorMapWriter& writer) {
@@ -166,7 +177,7 @@ class ColorBuild {
       const GridGeometry& geometry = database.grid(grid);
       DELTAZ_TRY_ASSIGN(const std::unique_ptr<ColorField> field, fieldOf(database, grid));
       ColorPyramidOptions pyramid;
-      pyramid.last_level = lastLevel(geometry);
+      DELTAZ_TRY_ASSIGN(pyramid.last_level, lastLevel(geometry));
       pyramid.progress = [&](double fraction) { report("colours", (grid + fraction) / grids); };
       DELTAZ_TRY(buildColorPyramid(static_cast<std::uint16_t>(grid), geometry.header(), *field, pyramid,
                                    workers_, writer));
