@@ -119,6 +119,7 @@ def statistics_have_every_member(folder):
         data = strict_json(file.read_text())
         require(data["engine"] == engine and data["camera"]["width"] == 160 and data["repeat"] == 2, data)
         (frame,) = data["frames"]
+        require(set(frame["models"]) == {"visited", "out_of_view", "drawn"}, frame)
         require(set(frame["nodes"]) == {"visited", "out_of_view", "beyond_horizon", "facing_away", "occluded", "drawn"}, frame)
         triangles = frame["triangles"]
         require(set(triangles) == {"in", "back_facing", "clipped", "no_sample", "drawn"}, frame)
