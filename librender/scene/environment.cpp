@@ -29,6 +29,8 @@ Status checkOptions(const RenderOptions& options) {
   return Success{};
 }
 
+}  // namespace
+
 Result<const ColorMap*> chooseColorMap(const Database& database, const std::string& name) {
   const std::vector<ColorMap>& maps = database.colorMaps();
   if (name == kNoColorMap || (name.empty() && maps.empty())) return nullptr;
@@ -36,12 +38,10 @@ Result<const ColorMap*> chooseColorMap(const Database& database, const std::stri
   if (const auto index = database.findColorMap(name)) return &maps[*index];
   std::string names;
   for (const AssetHeader& map : database.area().color_maps) names += (names.empty() ? "" : ", ") + map.name;
-  return usageError("colour map", fmt::format("{} has no colour map '{}'", database.path(), name),
-                    names.empty() ? "it has none at all" : "it has " + names,
+  return usageError(database.path(), fmt::format("there is no colour map '{}'", name),
+                    names.empty() ? "the database has none at all" : "it has " + names,
                     fmt::format("Give the name of one, or '{}' for colours by rule", kNoColorMap));
 }
-
-}  // namespace
 
 Result<Environment> makeEnvironment(const Database& database, const RenderOptions& options) {
   DELTAZ_TRY(checkOptions(options));

@@ -1,6 +1,8 @@
 // Everything both engines take from the scene definitions for one frame, and the checks both make.
 #pragma once
 
+#include <string>
+
 #include "librender/scene/atmosphere.h"
 #include "librender/scene/illumination.h"
 #include "librender/scene/render.h"
@@ -15,6 +17,10 @@ struct Environment {
   Sea sea;
   const ColorMap* color_map = nullptr;  // nullptr: colours by rule alone
 };
+
+// The map RenderOptions::color_map asks for, nullptr for none. kUsage, with the names there are, if there is
+// no such map.
+Result<const ColorMap*> chooseColorMap(const Database& database, const std::string& name);
 
 // kUsage for views that make no sense and for colour maps that are not there. The database must live as
 // long.

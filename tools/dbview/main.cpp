@@ -65,6 +65,7 @@ Result<int> run(const ViewOptions& options) {
   DELTAZ_TRY_ASSIGN(View view, parseView(options));
   DELTAZ_TRY_ASSIGN(const Database database, Database::open(localFileSystem(), options.area));
   DELTAZ_TRY(placeCamera(database, options, view));
+  DELTAZ_TRY(checkColorMap(database, options));
   DELTAZ_TRY(checkPoses(database, view.render.poses, options.pose_path));
   DELTAZ_TRY_ASSIGN(const Frame frame, renderFrame(database, view, options.common));
 

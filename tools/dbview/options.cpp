@@ -5,6 +5,7 @@
 
 #include "formats/file_system.h"
 #include "libdb/access/ground_query.h"
+#include "librender/scene/environment.h"
 #include "tools/common/output_file.h"
 #include "tools/common/parse.h"
 #include "tools/dbview/pose_file.h"
@@ -144,6 +145,14 @@ Status placeCamera(const Database& database, const ViewOptions& options, View& v
   }
   camera.eye.height = *ground + eye.altitude;
   return Success{};
+}
+
+Status checkColorMap(const Database& database, const ViewOptions& options) {
+  const Result<const ColorMap*> chosen = chooseColorMap(database, options.color);
+  if (chosen.ok()) return Success{};
+  Error error = chosen.error();
+  error.where = "--color: " + error.where;
+  return error;
 }
 
 const char* engineName(EngineKind kind) {

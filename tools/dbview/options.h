@@ -41,6 +41,9 @@ Result<View> parseView(const ViewOptions& options);
 // ground. Errors: kUsage where there is no ground under an eye above ground; whatever reading reports.
 Status placeCamera(const Database& database, const ViewOptions& options, View& view);
 
+// kUsage if the database does not have the colour map that was asked for.
+Status checkColorMap(const Database& database, const ViewOptions& options);
+
 const char* engineName(EngineKind kind);
 
 }  // namespace deltaz
