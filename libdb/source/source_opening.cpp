@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "libdb/source/gdal_session.h"
 #include "libdb/source/source_error.h"
 
 namespace deltaz {
@@ -36,7 +37,7 @@ Status checkFile(const std::string& path) {
     return accessError(path, "cannot open the source", "there is no such file");
   if (VSI_ISDIR(status.st_mode)) {
     if (isVirtual(path)) return Success{};
-    return refusedSource(path, "a folder is not an elevation source", {}, "Name the files in it");
+    return refusedSource(path, "a folder is not a source", {}, "Name the files in it");
   }
   if (!VSI_ISREG(status.st_mode))
     return refusedSource(path, "the source is not a regular file", {}, "Copy it into one");
@@ -77,6 +78,7 @@ Status addFile(const std::string& path, StreamingHash& hash) {
 }  // namespace
 
 Result<std::vector<std::string>> rastersBehind(const std::string& path) {
+  const GdalSession session;  // the drivers must be there to be asked
   DELTAZ_TRY(checkFile(path));
   if (isRaster(path)) return std::vector<std::string>{path};
   const bool archive = endsIn(path, ".zip");

@@ -1,5 +1,6 @@
 """Colour maps through the real programs: images of every kind, ramps, classes, rules; added, replaced, removed, checked."""
 import pathlib
+import zipfile
 
 from harness import SAMPLES, TEST_DATA, build, case, folder_bytes, gdal, main, require, run
 
@@ -7,7 +8,7 @@ from harness import SAMPLES, TEST_DATA, build, case, folder_bytes, gdal, main, r
 WEST, SOUTH, EAST, NORTH = 7.0, 46.0, 7.4, 46.3
 
 
-def picture(folder, name, color, columns=80, rows=60, options=()):
+def picture(folder, name, color, columns=80, rows=60, options=(), system="EPSG:4326"):
     """A GeoTIFF of `color(column, row)` -> bytes, one, three or four a pixel, over the small DEM unless told otherwise."""
     bands = len(color(0, 0))
     text = folder / (name + ".raw")
@@ -17,8 +18,8 @@ def picture(folder, name, color, columns=80, rows=60, options=()):
     target = folder / (name + ".tif")
     if "-a_ullr" not in options:
         options = ["-a_ullr", WEST, NORTH, EAST, SOUTH, *options]
-    if "-a_srs" not in options:
-        options = ["-a_srs", "EPSG:4326", *options]
+    if system:
+        options = ["-a_srs", system, *options]
     gdal("gdal_translate", "-q", *options, "-of", "GTiff", text, target)
     return target
 
@@ -39,6 +40,9 @@ def images_of_every_layout_and_system_are_taken(folder):
     terrain = {name: content for name, content in folder_bytes(area).items() if name != "area.json"}
     plain = picture(folder, "plain", gradient)
     add(area, "plain", "--image", plain)
+    with zipfile.ZipFile(folder / "archive.zip", "w") as archive:
+        archive.write(plain, "inside/plain.tif")
+    add(area, "zipped", "--image", folder / "archive.zip")
     add(area, "opaque", "--image", picture(folder, "rgba", lambda c, r: (*gradient(c, r), 255 if c < 40 else 0),
                                            options=["-colorinterp", "red,green,blue,alpha"]))
     add(area, "grey", "--image", picture(folder, "grey", lambda c, r: (c + r,)))
@@ -58,7 +62,7 @@ def images_of_every_layout_and_system_are_taken(folder):
     add(area, "classes", "--classes", palette)
     info = run("dbbuild", "info", area, "--json").json()
     names = [color_map["name"] for color_map in info["color_maps"]]
-    require(names == ["plain", "opaque", "grey", "nodata", "EPSG32632", "EPSG3857", "EPSG3035", "palette", "classes"], names)
+    require(names == ["plain", "zipped", "opaque", "grey", "nodata", "EPSG32632", "EPSG3857", "EPSG3035", "palette", "classes"], names)
     require(info["color_maps"][0]["sources"][0]["name"] == "plain.tif" and info["color_maps"][0]["origin"] == "image", info)
     after = folder_bytes(area)
     require(all(after[name] == content for name, content in terrain.items()), "a terrain file changed")
@@ -138,8 +142,7 @@ def what_is_wrong_is_named(folder):
     refused(2, ["--legend"], "--image", plain, "--legend", plain)
     refused(2, ["--texel"], "--image", plain, "--texel", "30")
     refused(3, ["missing.tif"], "--image", folder / "missing.tif")
-    bare = folder / "bare.tif"
-    gdal("gdal_translate", "-q", "-a_srs", "none", plain, bare)
+    bare = picture(folder, "bare", gradient, system="")
     refused(2, ["bare.tif", "--crs"], "--image", bare)
     add(area, "crs", "--image", bare, "--crs", "EPSG:4326")
     run("dbbuild", "color", area, "--name", "crs", "--remove")
