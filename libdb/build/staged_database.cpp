@@ -87,6 +87,8 @@ Result<StagedDatabase> StagedDatabase::begin(const FileSystem& files, const std:
 }
 
 Status StagedDatabase::publish() {
+  // What one step made and a later one replaced.
+  DELTAZ_TRY(removeUnlisted(*files_, path_));
   DELTAZ_TRY_ASSIGN(const PathType type, files_->typeOf(target_));
   if (type != PathType::kAbsent && overwrite_) {
     DELTAZ_TRY(moveInto());

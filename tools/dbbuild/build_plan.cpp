@@ -134,14 +134,33 @@ class PlanReader {
       return std::vector<std::string>{std::move(text)};
     }
     if (array->empty()) return errorAt(node.source(), fmt::format("'{}' is an empty list", key.name));
+    // Several numbers are one value: west, south, east, north; several texts, or lists of numbers, are
+    // several.
+    if (key.kind == KeyKind::kValue || isNumbers(*array)) {
+      DELTAZ_TRY_ASSIGN(std::string text, joined(*array, key));
+      return std::vector<std::string>{std::move(text)};
+    }
     std::vector<std::string> texts;
     for (const toml::node& element : *array) {
-      DELTAZ_TRY_ASSIGN(std::string text, textOf(element, key));
+      const toml::array* numbers = element.as_array();
+      DELTAZ_TRY_ASSIGN(std::string text, numbers != nullptr ? joined(*numbers, key) : textOf(element, key));
       texts.push_back(std::move(text));
     }
-    if (key.kind == KeyKind::kList) return texts;
-    // Several numbers of one option: west, south, east, north.
-    return std::vector<std::string>{fmt::format("{}", fmt::join(texts, ","))};
+    return texts;
+  }
+
+  static bool isNumbers(const toml::array& array) {
+    return std::all_of(array.begin(), array.end(),
+                       [](const toml::node& element) { return element.is_number(); });
+  }
+
+  Result<std::string> joined(const toml::array& array, const PlanKey& key) const {
+    std::string all;
+    for (const toml::node& element : array) {
+      DELTAZ_TRY_ASSIGN(const std::string text, textOf(element, key));
+      all += (all.empty() ? "" : ",") + text;
+    }
+    return all;
   }
 
   Result<std::string> textOf(const toml::node& node, const PlanKey& key) const {

@@ -18,7 +18,7 @@ namespace deltaz {
 enum class KeyKind : std::uint8_t {
   kFlag,   // true or false
   kValue,  // text or number; several numbers may stand in an array
-  kList    // one text, or an array of texts
+  kList    // one value, or an array of them; numbers alone are one, as above
 };
 
 struct PlanKey {

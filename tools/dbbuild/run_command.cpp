@@ -32,6 +32,13 @@ const std::vector<SectionSource>& sectionSources() {
   static const std::vector<SectionSource> sources = {
       {"terrain", makeTerrainCommand, false, {{"sources", KeyKind::kList, true, true, true}}, {}, {}},
       {"color", makeColorCommand, true, {}, {"image", "ramp", "classes", "legend"}, {"remove"}},
+      {"model", makeModelCommand, true, {{"mesh", KeyKind::kList, true, true, true}}, {}, {"remove"}},
+      {"place",
+       makePlaceCommand,
+       true,
+       {{"model", KeyKind::kValue, false, true, true}},
+       {"from"},
+       {"remove"}},
   };
   return sources;
 }

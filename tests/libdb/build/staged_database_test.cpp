@@ -35,6 +35,10 @@ Status buildInSteps(const FileSystem& files, std::uint32_t seed, bool overwrite)
   {
     DELTAZ_TRY_ASSIGN(Publication edit, Publication::beginEdit(files, staged.path()));
     AreaHeader area = edit.area();
+    // A file that no one names, as an edit leaves that replaces another's.
+    DELTAZ_TRY_ASSIGN(const std::unique_ptr<WritableFile> left,
+                      files.create(joinPath(staged.path(), "colors-000001-000.dzc")));
+    DELTAZ_TRY(left->close());
     area.options.emplace_back("edited", std::to_string(seed));
     DELTAZ_TRY(edit.publish(area));
   }
@@ -64,6 +68,8 @@ TEST(StagedDatabase, several_steps_appear_at_once_and_nothing_else_stays) {
   ASSERT_TRUE(built.ok()) << built.error().message();
   EXPECT_EQ(seedOf(files), 1u);
   EXPECT_EQ(files.list("maps").value(), std::vector<std::string>{"a.dz"});
+  EXPECT_EQ(files.list(kTarget).value().size(),
+            Database::open(files, kTarget).value().area().files.size() + 2);
 }
 
 TEST(StagedDatabase, an_existing_target_is_kept_unless_overwriting) {

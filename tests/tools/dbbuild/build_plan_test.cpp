@@ -15,6 +15,7 @@ const std::vector<PlanSection>& schema() {
         {"bounds", KeyKind::kValue},
         {"allow-ballpark", KeyKind::kFlag}}},
       {"color", true, false, {{"name", KeyKind::kValue}, {"image", KeyKind::kList, true}}},
+      {"place", true, false, {{"at", KeyKind::kList}}},
   };
   return sections;
 }
@@ -57,6 +58,18 @@ TEST(BuildPlan, sections_become_command_lines_with_paths_beside_the_file) {
   EXPECT_EQ(plan.value().steps[1].options,
             (std::vector<std::string>{"--name=summer", "--image=/maps/w.tif", "--image=/maps/e.tif"}));
   EXPECT_EQ(plan.value().steps[2].options, (std::vector<std::string>{"--name=winter", "--image=/abs.tif"}));
+}
+
+TEST(BuildPlan, numbers_in_a_list_are_one_value_and_lists_of_them_several) {
+  const auto options_of = [](const std::string& value) {
+    const Result<BuildPlan> plan = planOf(std::string(kTerrain) + "[[place]]\nat = " + value + "\n");
+    EXPECT_TRUE(plan.ok()) << plan.error().message();
+    return plan.ok() ? plan.value().steps.back().options : std::vector<std::string>{};
+  };
+  EXPECT_EQ(options_of("[46.5, -121]"), std::vector<std::string>{"--at=46.5,-121"});
+  EXPECT_EQ(options_of("'46.5,-121,120agl'"), std::vector<std::string>{"--at=46.5,-121,120agl"});
+  EXPECT_EQ(options_of("[[46.5, -121], '47,-122']"),
+            (std::vector<std::string>{"--at=46.5,-121", "--at=47,-122"}));
 }
 
 TEST(BuildPlan, an_unknown_key_is_named_with_its_place_and_the_nearest_name) {
