@@ -152,8 +152,8 @@ class ColorBuild {
   // holds.
   Result<std::optional<int>> lastLevel(const GridGeometry& geometry) const {
     if (!options_.texel) return std::optional<int>();
-    // A size that is meant to be the cell's is not to fail by a rounding.
-    constexpr double kAbout = 1 + 1e-6;
+    // A size that is meant to be the cell's is not to fail by a rounding, nor by a projection's scale.
+    constexpr double kAbout = 1.005;
     const double cells = wantedCells(geometry, *options_.texel) * kAbout;
     const int leaf = geometry.header().leaf_cells;
     int level = colorRootLevel(geometry.header()) + kColorFarLevels;

@@ -264,6 +264,18 @@ TEST(BuildColor, a_place_is_found_on_a_projected_grid) {
   EXPECT_NEAR((found[1] + y.phase) * y.spacing, northing, 0.25 * texel * y.spacing);
 }
 
+TEST(BuildColor, a_size_in_metres_is_met_whatever_the_projections_scale) {
+  RawGrid grid = projectedGrid();  // cells of 30 m, of 30.012 m on the ground
+  ColorBuildOptions options;
+  options.name = "natural";
+  options.synthetic = "natural";
+  for (const auto& [metres, level] :
+       {std::pair(30.0, 1), std::pair(15.0, 0), std::pair(29.0, 0), std::pair(61.0, 2)}) {
+    options.texel = PostSpacing{metres, false};
+    EXPECT_EQ(mapOf(opened(withMap(options, grid))).treeOf(0)->finest_level, level) << metres;
+  }
+}
+
 TEST(BuildColor, opacity_nodata_and_the_images_edge_bound_the_cover) {
   const TemporaryDirectory folder;
   TestImage image = overGrid(2, [](int column, int row) {
