@@ -34,6 +34,7 @@ class ColorTreeRule {
     for (std::uint32_t number = 1; number <= map_.nodes.size(); ++number) {
       if (reached_[number - 1] == 0) complain(number, "no link leads to it");
     }
+    if (context_.report.count(Severity::kError) == errors) checkOrder();
     map_.tree_sound = context_.report.count(Severity::kError) == errors;
     if (!map_.tree_sound) {
       addSkipped(context_.report,
@@ -159,6 +160,23 @@ class ColorTreeRule {
                                   fmt::format("the finest nodes over grid {} are of level {}, not {}",
                                               tree.grid, finest, tree.finest_level),
                                   whereBlock(file_, file_.container->blockCount() - 1)));
+  }
+
+  // Breadth first over all trees: children follow each other in the order of their parents.
+  void checkOrder() {
+    std::uint64_t next = 1;
+    for (const ColorTree& tree : map_.directory.trees) next += tree.root_count;
+    for (std::uint32_t number = 1; number <= map_.nodes.size(); ++number) {
+      const ColorNode& node = map_.nodes[number - 1];
+      if (node.children == 0) continue;
+      if (node.first_child != next) {
+        complain(number, fmt::format("its children begin at record {}, not {}, and are not in breadth-first "
+                                     "order",
+                                     node.first_child, next));
+        return;
+      }
+      next += static_cast<std::uint64_t>(std::popcount(node.children));
+    }
   }
 
   // Those that stand where they should are added to `open`.

@@ -253,20 +253,20 @@ constexpr std::array kRegistry = {
     CodeDescription{
         IssueCode::kColorTree, kError, kStructure, "the tree of a colour map is wrong",
         "A record of a colour map leads outside its file, stands where its parent does not say, is "
-        "reached twice or never, or its levels do not agree.",
-        kRebuildColors, "color_file.md 2"},
+        "reached twice or never, or its levels or its order do not agree.",
+        kRebuildColors, "color_file.md 1"},
     CodeDescription{IssueCode::kColorTile, kError, kDecode, "a tile of texels cannot be decoded",
                     "The bytes are those that were written, and they are no tile of texels.", kRebuildColors,
-                    "color_file.md 3"},
+                    "color_file.md 1"},
     CodeDescription{IssueCode::kColorBorder, kError, kDecode, "a tile's border differs from its neighbour",
                     "The texels a tile carries of its neighbour are not the neighbour's own: pictures show a "
                     "seam between the two.",
-                    kRebuildColors, "color_file.md 3"},
+                    kRebuildColors, "color_file.md 2"},
     CodeDescription{
         IssueCode::kColorFilter, kError, kDecode, "a texel is not the mean of those below it",
         "A texel of a coarser level was recomputed, in linear light, from the four of the finer one, "
         "and is another: colours change with distance.",
-        kRebuildColors, "color_file.md 4"},
+        kRebuildColors, "color_file.md 2"},
     CodeDescription{
         IssueCode::kModelTree, kError, kStructure, "the tree of a model is wrong",
         "A part has no parent that stands before it, names a mesh that is not there, or has a name "

@@ -118,7 +118,7 @@ def killed_edit(folder, name, base, command):
     for _ in range(KILLS):
         shutil.rmtree(area)
         shutil.copytree(base, area)
-        killed_after(moments.uniform(0, 1.05 * whole), [program("dbbuild"), *command(area)])
+        killed_after(moments.uniform(0, 1.3 * whole), [program("dbbuild"), *command(area)])
         run("dbcheck", area)
         require(run("dbbuild", "info", area, "--digest").out == digest, "the terrain is another")
         state = state_of(area)

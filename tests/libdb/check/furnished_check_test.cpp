@@ -1,6 +1,7 @@
 // The check of a database with a colour map, a model and placements: what is found, how often, and what is
 // not called wrong.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -159,6 +160,29 @@ TEST(CheckColors, records_that_make_no_tree_are_reported) {
       return;
     }
   });
+}
+
+// A tree all the same, and not breadth first.
+TEST(CheckColors, children_that_do_not_follow_their_parents_order_are_reported) {
+  bool swapped = false;
+  const std::string after = afterColors([&](ColorParts& parts) {
+    for (std::size_t a = 0; a < parts.nodes.size() && !swapped; ++a) {
+      for (std::size_t b = a + 1; b < parts.nodes.size() && !swapped; ++b) {
+        ColorNode &first = parts.nodes[a], &second = parts.nodes[b];
+        const int children = std::popcount(first.children);
+        if (first.level != second.level || children == 0 || children != std::popcount(second.children))
+          continue;
+        for (int k = 0; k < children; ++k) {
+          std::swap(parts.nodes[first.first_child - 1 + static_cast<std::size_t>(k)],
+                    parts.nodes[second.first_child - 1 + static_cast<std::size_t>(k)]);
+        }
+        std::swap(first.first_child, second.first_child);
+        swapped = true;
+      }
+    }
+  });
+  ASSERT_TRUE(swapped) << "no two nodes have as many children";
+  EXPECT_EQ(after, "COL_TREE x 1");
 }
 
 TEST(CheckColors, blocks_of_another_type_are_reported) {
