@@ -1,14 +1,15 @@
 #include "libdb/build/build_model.h"
 
 #include <algorithm>
-#include <atomic>
 #include <fmt/format.h>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <new>
 #include <set>
+#include <span>
 
+#include "formats/hash.h"
 #include "libdb/access/model.h"
 #include "libdb/build/mesh_detail.h"
 #include "libdb/build/model_writer.h"
@@ -90,6 +91,21 @@ ModelBox boxOf(const std::vector<ImportedPart>& parts) {
   return box;
 }
 
+// For each part the first with the same mesh: wheels and bolts come in numbers.
+std::vector<std::size_t> firstUses(const std::vector<ImportedPart>& parts) {
+  std::map<std::uint64_t, std::vector<std::size_t>> by_hash;
+  std::vector<std::size_t> first_use;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const ImportedMesh& mesh = parts[p].mesh;
+    std::vector<std::size_t>& alike = by_hash[hash64(std::as_bytes(std::span(mesh.positions)))];
+    const auto same = std::find_if(alike.begin(), alike.end(),
+                                   [&](std::size_t other) { return parts[other].mesh == mesh; });
+    first_use.push_back(same != alike.end() ? *same : p);
+    if (same == alike.end()) alike.push_back(p);
+  }
+  return first_use;
+}
+
 Result<ModelSummary> build(const FileSystem& files, const std::string& target,
                            const std::vector<std::string>& meshes, const ModelBuildOptions& options) {
   const auto report = [&](std::string_view phase, double fraction) {
@@ -111,9 +127,10 @@ Result<ModelSummary> build(const FileSystem& files, const std::string& target,
     return invalidError(IssueCode::kNone, options.name, "there is nothing left to draw",
                         "no triangle of the meshes has an area", "Check the files and --units");
   }
+  const std::vector<std::size_t> first_use = firstUses(parts);
   FinishedModel model;
   model.parts.resize(parts.size());
-  std::atomic<std::size_t> done{0};
+  std::size_t done = 0;
   std::mutex reporting;
   WorkerPool workers(options.threads);
   workers.forEach(parts.size(), [&](std::size_t p) {
@@ -123,11 +140,14 @@ Result<ModelSummary> build(const FileSystem& files, const std::string& target,
     finished.parent = part.parent;
     finished.transform = part.transform;
     if (part.mesh.triangles.empty()) return;
-    finished.lods = makeDetailLevels(part.mesh, options.lods);
+    if (first_use[p] == p) finished.lods = makeDetailLevels(part.mesh, options.lods);
     const std::lock_guard guard(reporting);
     done += part.mesh.triangles.size();
     report("levels of detail", 0.2 + 0.7 * static_cast<double>(done) / static_cast<double>(total));
   });
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (first_use[p] != p) model.parts[p].lods = model.parts[first_use[p]].lods;
+  }
   const ModelBox box = boxOf(parts);
   for (std::size_t k = 0; k < 3; ++k) summary.size[k] = box.high[k] - box.low[k];
   if (options.anchor == ModelAnchor::kBase)

@@ -42,6 +42,7 @@ class QuadricModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
   void initialize() override {
     MeshT& mesh = Base::mesh();
     quadrics_.assign(mesh.n_vertices(), Quadric());
+    outward_.assign(mesh.n_vertices(), Point(0, 0, 0));
     for (const auto face : mesh.faces()) {
       std::array<typename MeshT::VertexHandle, 3> corners;
       std::size_t count = 0;
@@ -53,7 +54,10 @@ class QuadricModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
       const Point normal = across / size;
       Quadric plane(normal[0], normal[1], normal[2], -(normal | a));
       plane *= size / 2;
-      for (const auto vertex : corners) quadrics_[number(vertex)] += plane;
+      for (const auto vertex : corners) {
+        quadrics_[number(vertex)] += plane;
+        outward_[number(vertex)] += across;
+      }
       for (const auto halfedge : mesh.fh_range(face)) {
         if (!mesh.is_boundary(mesh.opposite_halfedge_handle(halfedge))) continue;
         const auto from = mesh.from_vertex_handle(halfedge), to = mesh.to_vertex_handle(halfedge);
@@ -75,8 +79,10 @@ class QuadricModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
     for (const auto face : mesh.vf_range(info.v0)) {
       if (face == info.fl || face == info.fr) continue;
       std::array<Point, 3> before, after;
+      std::array<typename MeshT::VertexHandle, 3> corners;
       std::size_t count = 0;
       for (const auto vertex : mesh.fv_range(face)) {
+        corners[count] = vertex == info.v0 ? info.v1 : vertex;
         before[count] = mesh.point(vertex);
         after[count] = vertex == info.v0 ? info.p1 : before[count];
         ++count;
@@ -85,6 +91,10 @@ class QuadricModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
       const Point m = (after[1] - after[0]) % (after[2] - after[0]);
       // Written so that a triangle without area, and anything that is no number, is refused.
       if (!((n | m) > kLeastTurn * n.norm() * m.norm())) return static_cast<float>(Base::ILLEGAL_COLLAPSE);
+      // Many small turns make a whole one: against the finest surface at each of its corners.
+      if (std::all_of(corners.begin(), corners.end(),
+                      [&](const auto vertex) { return (outward_[number(vertex)] | m) < 0; }))
+        return static_cast<float>(Base::ILLEGAL_COLLAPSE);
     }
     Quadric sum = quadrics_[number(info.v0)];
     sum += quadrics_[number(info.v1)];
@@ -101,6 +111,7 @@ class QuadricModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
     return static_cast<std::size_t>(vertex.idx());
   }
   std::vector<Quadric> quadrics_;
+  std::vector<Point> outward_;  // of the finest mesh, weighed by area
 };
 
 using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;

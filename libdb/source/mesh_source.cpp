@@ -100,7 +100,9 @@ class SceneConverter {
       if (!(std::abs(value) <= kMaximumModelMetres)) return outOfRange("the transform of a node");
     }
     const ModelTransform frame = frameOf(to_file);
-    const ModelTransform to_frame = concatenate(to_file, inverseOf(frame));
+    // Both have one origin; said exactly, so that every use of a mesh gets the same positions.
+    ModelTransform to_frame = concatenate(to_file, inverseOf(frame));
+    to_frame[9] = to_frame[10] = to_frame[11] = 0;
     ImportedPart part;
     part.name = node.name.empty() ? model.parts.front().name : node.name;
     part.parent = top ? 0 : part_of_[node.parent];

@@ -31,6 +31,7 @@ struct ImportedMesh {
   std::vector<std::array<std::array<float, 3>, 3>> normals;
   std::vector<std::array<SrgbColor, 3>> colors;
   bool two_sided = false;
+  bool operator==(const ImportedMesh&) const = default;
 };
 
 struct ImportedPart {

@@ -1,7 +1,13 @@
+#include "libdb/build/build_model.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 #include "libdb/access/database.h"
 #include "tests/support/model_fixture.h"
+#include "tests/support/sampled_distance.h"
 #include "tests/support/synthetic_grid.h"
 
 namespace deltaz {
@@ -97,6 +103,88 @@ TEST(ModelWriter, removing_the_last_model_keeps_the_numbers_given) {
   ASSERT_TRUE(database.ok()) << database.error().message();
   EXPECT_TRUE(database.value().models().empty());
   EXPECT_NE(database.value().placements(), nullptr);
+}
+
+struct Soup {
+  std::vector<Vector3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  TriangleView view() const { return {positions, triangles}; }
+};
+
+Soup soupOf(const ModelMesh& mesh) {
+  Soup soup;
+  for (const auto& [x, y, z] : mesh.vertices)
+    soup.positions.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+  soup.triangles = mesh.triangles;
+  return soup;
+}
+
+// More samples where triangles are few.
+int stepsFor(const Soup& soup) {
+  return soup.triangles.size() > 1000 ? 2 : soup.triangles.size() > 300 ? 5 : 14;
+}
+
+TEST(BuildModel, stored_errors_of_real_meshes_hold_against_samples) {
+  const char* const folder = std::getenv("DELTAZ_TEST_DATA");
+  if (folder == nullptr) GTEST_SKIP() << "DELTAZ_TEST_DATA names no folder";
+  std::vector<std::string> meshes;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(folder) + "/mesh")) {
+    const std::string ending = entry.path().extension().string();
+    // The engine has too many triangles to be tried one by one.
+    const bool small = entry.file_size() < 1000000;
+    if (small && (ending == ".glb" || ending == ".ply" || ending == ".stl"))
+      meshes.push_back(entry.path().string());
+  }
+  ASSERT_FALSE(meshes.empty());
+  const MemoryFileSystem files = buildInMemory(syntheticGrid());
+  std::size_t compared = 0;
+  for (const std::string& mesh : meshes) {
+    ModelBuildOptions options;
+    options.name = "model";
+    options.overwrite = true;
+    const Result<ModelSummary> summary = buildModel(files, kMemoryDatabasePath, {mesh}, options);
+    ASSERT_TRUE(summary.ok()) << summary.error().message();
+    const Result<Database> database = Database::open(files, kMemoryDatabasePath);
+    ASSERT_TRUE(database.ok());
+    const Model& model = database.value().models().front();
+    for (const ModelPart& part : model.tree().parts) {
+      if (part.lods.empty()) continue;
+      const Soup finest = soupOf(model.mesh(part.lods.front()).value());
+      for (std::size_t k = 1; k < part.lods.size(); ++k) {
+        EXPECT_LT(part.lods[k].triangle_count, part.lods[k - 1].triangle_count);
+        EXPECT_GT(part.lods[k].error, part.lods[k - 1].error);
+        const Soup coarse = soupOf(model.mesh(part.lods[k]).value());
+        const double sampled = std::max(sampledDistance(finest.view(), coarse.view(), stepsFor(finest)),
+                                        sampledDistance(coarse.view(), finest.view(), stepsFor(coarse)));
+        const double stored = static_cast<double>(part.lods[k].error);
+        EXPECT_GE(stored, sampled) << mesh << ", level " << k;
+        EXPECT_LE(stored, 1.2 * sampled) << mesh << ", level " << k;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GE(compared, meshes.size());
+}
+
+TEST(BuildModel, the_bytes_do_not_depend_on_the_number_of_threads) {
+  const char* const folder = std::getenv("DELTAZ_TEST_DATA");
+  if (folder == nullptr) GTEST_SKIP() << "DELTAZ_TEST_DATA names no folder";
+  const std::string mesh = std::string(folder) + "/mesh/";
+  std::vector<MemoryFileSystem> results;
+  for (const int threads : {1, 2}) {
+    const MemoryFileSystem files = buildInMemory(syntheticGrid());
+    ModelBuildOptions options;
+    options.name = "village";
+    options.threads = threads;
+    const Result<ModelSummary> summary =
+        buildModel(files, kMemoryDatabasePath, {mesh + "house1-1.glb", mesh + "tree-lime-2-0.glb"}, options);
+    ASSERT_TRUE(summary.ok()) << summary.error().message();
+    EXPECT_EQ(summary.value().parts.size(), 3u);
+    results.push_back(files);
+  }
+  ASSERT_EQ(results[0].paths(), results[1].paths());
+  for (const std::string& path : results[0].paths())
+    EXPECT_EQ(results[0].bytes(path), results[1].bytes(path));
 }
 
 }  // namespace
