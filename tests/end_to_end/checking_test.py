@@ -1,5 +1,5 @@
 """dbcheck's verdict on areas that are right, and on what it was not shown."""
-from harness import case, gdal, main, require, run, small_dem
+from harness import case, flip_bit, gdal, main, require, run, small_dem
 
 
 def text_grid(folder, name, system, west, south, cell, columns, rows):
@@ -55,6 +55,23 @@ def a_source_outside_the_bounds_is_a_note(folder):
     # Without bounds there is no reason to leave it out.
     ended = run("dbcheck", folder / "whole.dz", "--against", small, apart, "--json", expect=1).json()
     require({issue["code"] for issue in ended["issues"]} == {"SRC_GEOREFERENCE"}, ended)
+
+
+@case
+def damage_to_colours_is_found_and_named(folder):
+    area = folder / "area.dz"
+    run("dbbuild", "terrain", small_dem(folder), "-o", area)
+    run("dbbuild", "color", area, "--name", "summer", "--synthetic", "natural")
+    require(run("dbcheck", area, "--level", "all", "--json").json()["verdict"] == "valid", "a sound colour map")
+    colors = next(file for file in area.iterdir() if file.name.startswith("colors"))
+    flip_bit(colors, 40)
+    ended = run("dbcheck", area, "--json", expect=1).json()
+    issue, = ended["issues"]
+    require(issue["code"] == "SUM_BLOCK" and issue["count"] == 1, ended)
+    require(colors.name in str(issue), ended)
+    colors.unlink()
+    ended = run("dbcheck", area, "--json", expect=1).json()
+    require({issue["code"] for issue in ended["issues"]} == {"IO_MISSING_FILE"}, ended)
 
 
 @case

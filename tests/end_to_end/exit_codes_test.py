@@ -1,7 +1,7 @@
 """Every row of the table of exit codes, for every tool."""
 import fcntl
 
-from harness import (build, case, damaged_database, flip_bit, main, newer_database, require, run, small_dem)
+from harness import (build, case, damaged_database, flip_bit, folder_bytes, main, newer_database, require, run, small_dem)
 
 TOOLS = ["dbbuild", "dbview", "dbcheck"]
 
@@ -157,6 +157,10 @@ def a_second_writer_ends_with_3(folder):
     with open(area / "lock", "a", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         run("dbbuild", "terrain", dem, "-o", area, "--overwrite", expect=3, words=["another process is writing"])
+        before = folder_bytes(area)
+        for edit in (["color", area, "--name", "summer", "--synthetic", "natural"], ["gc", area]):
+            run("dbbuild", *edit, expect=3, words=["another process is writing"])
+        require(folder_bytes(area) == before, "a writer that was turned away changed the database")
     run("dbbuild", "terrain", dem, "-o", area, "--overwrite")
 
 

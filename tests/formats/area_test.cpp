@@ -128,7 +128,10 @@ TEST(Area, a_name_that_is_not_utf8_stays_readable) {
 
 AreaHeader areaWithAssets() {
   AreaHeader area = sampleArea();
-  area.color_maps = {{"summer", "image", {{"ortho.tif", Hash128{{std::byte{1}, std::byte{2}}}}, {"b.tif", {}}}, {{"texel", "30m"}}},
+  area.color_maps = {{"summer",
+                      "image",
+                      {{"ortho.tif", Hash128{{std::byte{1}, std::byte{2}}}}, {"b.tif", {}}},
+                      {{"texel", "30m"}}},
                      {"winter", "synthetic", {}, {}}};
   area.models = {{"tower", "mesh", {{"tower.glb", {}}}, {}}, {"a.b_c-2", "mesh", {}, {{"units", "ft"}}}};
   area.files.push_back({FileRole::kColors, 0, "colors-000002-000.dzc", 5, {}});
