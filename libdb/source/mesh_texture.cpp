@@ -36,7 +36,7 @@ Result<MeshTexture> MeshTexture::decode(std::span<const std::byte> bytes, const 
     return invalidError(IssueCode::kNone, where, "the texture cannot be read", why);
   };
   // GDAL only reads from the buffer.
-  auto* data = const_cast<GByte*>(reinterpret_cast<const GByte*>(bytes.data()));
+  auto* data = static_cast<GByte*>(const_cast<void*>(static_cast<const void*>(bytes.data())));
   VSILFILE* made = VSIFileFromMemBuffer(file.name.c_str(), data, bytes.size(), FALSE);
   if (made == nullptr) return refused(session.lastFailure());
   VSIFCloseL(made);
