@@ -7,6 +7,7 @@
 #include "libdb/access/database.h"
 #include "libdb/source/reference_system.h"
 #include "tools/common/json_output.h"
+#include "tools/dbbuild/asset_report.h"
 #include "tools/dbbuild/command.h"
 
 namespace deltaz {
@@ -90,62 +91,7 @@ Json gridJson(const GridHeader& grid) {
   return json;
 }
 
-Json assetsJson(const std::vector<AssetHeader>& assets) {
-  Json list = Json::array();
-  for (const AssetHeader& asset : assets) {
-    Json json;
-    json["name"] = asset.name;
-    json["origin"] = asset.origin;
-    json["sources"] = Json::array();
-    for (const SourceFile& source : asset.sources)
-      json["sources"].push_back({{"name", source.name}, {"content", toHex(source.content)}});
-    json["options"] = Json::object();
-    for (const auto& [name, value] : asset.options) json["options"][name] = value;
-    list.push_back(json);
-  }
-  return list;
-}
-
-// How many models stand in the area.
-std::uint32_t placementCount(const Database& database) {
-  return database.placements() == nullptr ? 0 : database.placements()->directory().count;
-}
-
-Json colorMapsJson(const Database& database) {
-  Json list = assetsJson(database.area().color_maps);
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const ColorDirectory& directory = database.colorMaps()[k].directory();
-    list[k]["nodes"] = directory.node_count;
-    list[k]["trees"] = Json::array();
-    for (const ColorTree& tree : directory.trees) {
-      list[k]["trees"].push_back({{"grid", tree.grid},
-                                  {"finest_level", tree.finest_level},
-                                  {"coarsest_level", tree.coarsest_level}});
-    }
-  }
-  return list;
-}
-
-std::string assetsText(const Database& database) {
-  std::string text;
-  const auto sources = [](const AssetHeader& asset) {
-    std::string names;
-    for (const SourceFile& source : asset.sources) names += (names.empty() ? "" : ", ") + source.name;
-    return names.empty() ? std::string() : " of " + names;
-  };
-  for (std::size_t k = 0; k < database.area().color_maps.size(); ++k) {
-    const AssetHeader& map = database.area().color_maps[k];
-    text += fmt::format("  colour map      {}: {}{}, {} nodes\n", map.name, map.origin, sources(map),
-                        database.colorMaps()[k].directory().node_count);
-  }
-  for (const AssetHeader& model : database.area().models)
-    text += fmt::format("  model           {}: {}{}\n", model.name, model.origin, sources(model));
-  if (const std::uint32_t count = placementCount(database); count > 0)
-    text += fmt::format("  placements      {}\n", count);
-  return text;
-}
-
-Json areaJson(const std::string& path, const Database& database) {
+Result<Json> areaJson(const std::string& path, const Database& database) {
   const AreaHeader& area = database.area();
   Json json = jsonHeader("dbbuild");
   json["area"] = path;
@@ -159,8 +105,8 @@ Json areaJson(const std::string& path, const Database& database) {
   json["grids"] = Json::array();
   for (const GridHeader& grid : area.grids) json["grids"].push_back(gridJson(grid));
   json["color_maps"] = colorMapsJson(database);
-  json["models"] = assetsJson(area.models);
-  json["placements"] = placementCount(database);
+  json["models"] = modelsJson(database);
+  DELTAZ_TRY_ASSIGN(json["placements"], placementsJson(database));
   json["files"] = Json::array();
   for (const FileReference& file : area.files) {
     json["files"].push_back({{"name", file.name},
@@ -229,7 +175,7 @@ std::string areaText(const std::string& path, const Database& database, bool ver
       text += fmt::format("    source        {} ({}, {})\n", source.name, source.driver, source.data_type);
     }
   }
-  text += assetsText(database);
+  text += assetsText(database, verbose);
   for (const auto& [name, value] : area.options)
     text += fmt::format("  option          {}: {}\n", name, value);
   for (const FileReference& file : area.files) {
@@ -258,7 +204,7 @@ class InfoCommand final : public Command {
       digest = toHex(hash);
     }
     if (common_.json) {
-      Json json = areaJson(area_, database);
+      DELTAZ_TRY_ASSIGN(Json json, areaJson(area_, database));
       if (digest_) json["content_digest"] = digest;
       std::cout << jsonText(json);
     } else if (digest_) {
