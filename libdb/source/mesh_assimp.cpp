@@ -120,7 +120,9 @@ class SceneReader {
       if (embedded->mHeight != 0)
         return invalidError(IssueCode::kNone, name, "the texture is of a kind not read");
       return MeshTexture::decode(
-          std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)), name);
+          std::as_bytes(std::span(static_cast<const char*>(static_cast<const void*>(embedded->pcData)),
+                                  embedded->mWidth)),
+          name);
     }
     // Files beside the mesh, and nothing that reaches elsewhere.
     if (name.empty() || name.front() == '/' || name.find("://") != std::string::npos) {
@@ -232,7 +234,8 @@ std::vector<std::string> missingMaterials(const std::string& path) {
   std::vector<std::string> missing;
   const Result<std::vector<std::byte>> bytes = readWholeFile(localFileSystem(), path, 2u << 30);
   if (!bytes.ok()) return missing;
-  const std::string text(reinterpret_cast<const char*>(bytes.value().data()), bytes.value().size());
+  const std::string text(static_cast<const char*>(static_cast<const void*>(bytes.value().data())),
+                         bytes.value().size());
   for (std::size_t at = text.find("mtllib "); at != std::string::npos; at = text.find("mtllib ", at + 1)) {
     if (at > 0 && text[at - 1] != '\n') continue;
     std::string name = text.substr(at + 7, text.find_first_of("\r\n", at) - at - 7);

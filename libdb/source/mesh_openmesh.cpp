@@ -169,9 +169,9 @@ bool isTextStl(const std::vector<std::byte>& bytes) {
 
 // A text STL ends with "endsolid"; one that was cut does not.
 bool endsWhole(const std::vector<std::byte>& bytes) {
-  const std::string tail(
-      reinterpret_cast<const char*>(bytes.data()) + (bytes.size() > 512 ? bytes.size() - 512 : 0),
-      std::min<std::size_t>(bytes.size(), 512));
+  const std::string tail(static_cast<const char*>(static_cast<const void*>(bytes.data())) +
+                             (bytes.size() > 512 ? bytes.size() - 512 : 0),
+                         std::min<std::size_t>(bytes.size(), 512));
   return tail.find("endsolid") != std::string::npos || tail.find("ENDSOLID") != std::string::npos;
 }
 
