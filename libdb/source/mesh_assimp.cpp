@@ -139,6 +139,8 @@ class SceneReader {
   Status addNode(const aiNode& source, std::uint32_t parent) {
     RawNode node;
     node.name = source.mName.C_Str();
+    // Assimp's name for what an OBJ says before it names an object; the file's own name says more.
+    if (node.name == "defaultobject") node.name.clear();
     node.parent = parent;
     node.transform = transformOf(source.mTransformation);
     for (unsigned int k = 0; k < source.mNumMeshes; ++k) {

@@ -9,8 +9,8 @@
 #pragma once
 
 #include "formats/area.h"
-#include "librender/scene/camera.h"
 #include "libdb/access/color.h"
+#include "librender/scene/camera.h"
 
 namespace deltaz {
 

@@ -6,9 +6,9 @@
 #pragma once
 
 #include "formats/area.h"
+#include "libdb/access/color.h"
 #include "librender/scene/atmosphere.h"
 #include "librender/scene/camera.h"
-#include "libdb/access/color.h"
 #include "librender/scene/illumination.h"
 
 namespace deltaz {

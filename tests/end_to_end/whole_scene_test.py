@@ -1,9 +1,10 @@
 """Terrain, colour maps, models and placements together: one build file, one database, pictures of it."""
 import json
 import math
+import pathlib
 import shutil
 
-from harness import SAMPLES, case, main, require, run, strict_json
+from harness import RAINIER, SAMPLES, TEST_DATA, case, main, require, run, strict_json
 
 import numpy
 from osgeo import gdal, osr
@@ -149,6 +150,103 @@ def a_feature_comes_back_at_its_place_through_depth(folder):
             half_texel = 0.5 * 3 * 30.9 / 16  # the texel at or below any of the images' pixels is a sixteenth of a cell or more
             require(math.hypot(north, east) < half_texel, f"{name} {label}: {east:.2f} m east and {north:.2f} m north of its place")
             print(f"{name} {label}: {east:.2f} m east, {north:.2f} m north")
+
+
+def changed(before, after):
+    """Where something new stands: nearer than what was there."""
+    return numpy.nan_to_num(before, posinf=1e9) - numpy.nan_to_num(after, posinf=1e9) > 0.01
+
+
+def heights(depth, camera):
+    """Metres above the ellipsoid of each pixel's surface, to a millimetre near the ground."""
+    i, j = numpy.mgrid[0:depth.shape[0], 0:depth.shape[1]]
+    x, y, z = (camera["eye"][k] + depth * (camera["forward"][k] + camera["right"][k] * (j - camera["centre_j"]) / camera["pixels"] +
+                                           camera["down"][k] * (i - camera["centre_i"]) / camera["pixels"]) for k in range(3))
+    latitude, _ = geodetic((x, y, z), camera)
+    axis, flattening = camera["semi_major_axis"], 1 / camera["inverse_flattening"]
+    radius = axis / numpy.sqrt(1 - flattening * (2 - flattening) * numpy.sin(numpy.radians(latitude))**2)
+    return numpy.hypot(x, y) / numpy.cos(numpy.radians(latitude)) - radius
+
+
+MESHES = {"house-3-0.glb": [], "house-4-2.glb": [], "tree-beech-1-0.glb": [], "tree-spruce-0-0.glb": [], "house-5-3.glb": [], "house1-1.glb": [],
+          "tree-lime-2-0.glb": [], "WusonOBJ.obj": ["--up", "y"], "Wuson.ply": ["--up", "y"], "Spider_ascii.stl": [], "Spider_binary.stl": [],
+          "2CylinderEngine.glb": ["--units", "cm"]}
+
+
+def mesh_files():
+    folders = [SAMPLES / "models"] + ([pathlib.Path(TEST_DATA) / "mesh"] if TEST_DATA else [])
+    return {name: next(folder / name for folder in folders if (folder / name).exists()) for name in MESHES
+            if any((folder / name).exists() for folder in folders)}
+
+
+@case
+def models_stand_at_their_places_right_way_up(folder):
+    latitude, longitude, ground = 46.7862, -121.7352, None
+    bare = folder / "bare.dz"
+    run("dbbuild", "terrain", RAINIER, "-o", bare, "--bounds", "-121.8,46.75,-121.68,46.83", "--void", "fill")
+    for name, file in mesh_files().items():
+        area = folder / (name + ".dz")
+        shutil.copytree(bare, area)
+        made = run("dbbuild", "model", area, file, "--name", "thing", *MESHES[name], "--json").json()
+        placed = run("dbbuild", "place", area, "thing", "--at", f"{latitude},{longitude}", "--json").json()["placements"][0]
+        ground = placed["height"]
+        size = max(made["size_metres"])
+        # From above: its middle in plan is where it was put.
+        far = ground + 40 * size
+        look = ["--eye", f"{latitude},{longitude},{far}", "--look", "0,-90", "--fov", "4", "--size", "400x400", "--tolerance", "0"]
+        _, depth_before, camera = view(bare, folder, name + "-before", *look, "--overwrite")
+        _, depth_after, camera = view(area, folder, name + "-after", *look, "--overwrite")
+        new = changed(depth_before, depth_after)
+        require(new.sum() > 300, f"{name}: nothing stands there")
+        at = [value[new] for value in places(depth_after, camera)]
+        north = ((at[0].max() + at[0].min()) / 2 - latitude) * 111200
+        east = ((at[1].max() + at[1].min()) / 2 - longitude) * 111320 * math.cos(math.radians(latitude))
+        require(math.hypot(north, east) < min(1, 0.2 * size), f"{name}: {east:.2f} m east, {north:.2f} m north of its place")
+        # From the south: it stands on the ground, as high as it is.
+        look = ["--eye", f"{latitude - 12 * size / 111200},{longitude},{ground + size}", "--look", "0,-3", "--fov", "14", "--size", "400x400",
+                "--tolerance", "0"]
+        _, depth_before, camera = view(bare, folder, name + "-before", *look, "--overwrite")
+        _, depth_after, camera = view(area, folder, name + "-after", *look, "--overwrite")
+        new = changed(depth_before, depth_after)
+        found = heights(depth_after, camera)[new]
+        top = found.max() - ground
+        require(abs(top - made["size_metres"][2]) < 0.05 * size + 0.01, f"{name}: its top is {top:.2f} m above ground, of {made['size_metres'][2]:.2f} m")
+        # What the hillside hides of its foot is not seen.
+        require(found.min() - ground < 0.25 * size, f"{name}: its foot is {found.min() - ground:.2f} m above ground")
+        run("dbcheck", area, "--level", "all")
+
+
+@case
+def a_moved_part_moves_by_what_the_pose_says(folder):
+    """A tower with a crane on it, turned by a quarter and lifted."""
+    work = folder / "work"
+    work.mkdir()
+    def box(name, low, high):
+        corners = [(x, y, z) for z in (low[2], high[2]) for x, y in ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]))]
+        faces = [(1, 4, 3, 2), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8)]
+        (work / name).write_text("".join("v %g %g %g\n" % c for c in corners) + "".join("f %d %d %d %d\n" % f for f in faces))
+        return work / name
+    area = folder / "area.dz"
+    flat_dem(folder / "dem.tif")
+    run("dbbuild", "terrain", folder / "dem.tif", "-o", area)
+    run("dbbuild", "model", area, box("tower.obj", (-2, -2, 0), (2, 2, 30)), box("crane.obj", (-1, 0, 30), (1, 25, 32)), "--name", "tower", "--anchor", "origin")
+    latitude, longitude = 46.05, 10.05
+    ground = run("dbbuild", "place", area, "tower", "--at", f"{latitude},{longitude}", "--json").json()["placements"][0]["height"]
+    names = [part["name"] for part in run("dbbuild", "info", area, "--json").json()["models"][0]["parts"]]
+    crane = next(name for name in names if "crane" in name)
+    pose = folder / "pose.json"
+    pose.write_text(json.dumps({"poses": [{"model": "tower", "part": crane, "rotate": {"axis": [0, 0, 1], "degrees": -90}, "translate": [0, 0, 6]}]}))
+    look = ["--eye", f"{latitude},{longitude},{ground + 500}", "--look", "0,-90", "--fov", "12", "--size", "500x500"]
+    def tip(*options):
+        _, depth, camera = view(area, folder, "tip", *look, *options, "--overwrite")
+        up = heights(depth, camera) - ground
+        crane_pixels = up > 31
+        at = [value[crane_pixels] for value in places(depth, camera)]
+        return ((at[1].max() - longitude) * 111320 * math.cos(math.radians(latitude)), (at[0].max() - latitude) * 111200, up[crane_pixels].mean())
+    east, north, height = tip()
+    require(abs(north - 25) < 0.5 and abs(east - 1) < 0.5 and abs(height - 32) < 0.1, f"unmoved: {east} {north} {height}")
+    east, north, height = tip("--pose", pose)
+    require(abs(east - 25) < 0.5 and abs(north - 1) < 0.5 and abs(height - 38) < 0.1, f"moved: {east} {north} {height}")
 
 
 if __name__ == "__main__":
