@@ -222,6 +222,46 @@ TEST(Texture, has_no_steps_along_borders_of_nodes_and_levels) {
   }
 }
 
+// Seen from above, where the ground itself makes no step, the plain measure holds: no step across a border is
+// larger than the largest thousandth of those inside nodes. (Of a rougher map as many steps are larger on
+// both sides: it is the share that tells, not the largest.)
+TEST(Texture, seen_from_above_no_step_across_a_border_stands_out) {
+  SyntheticGridOptions level_ground = smallArea();
+  level_ground.lowest = 900;
+  level_ground.highest = 905;
+  const MemoryDatabase memory =
+      makeTexturedDatabase({syntheticGrid(level_ground)}, kLeafCells, 2, [](auto, double c, double r) {
+        return std::array<std::uint8_t, 4>{wave(c / 23, 120, 70), wave(r / 27, 120, 70),
+                                           wave((c - r) / 33, 120, 70), 255};
+      });
+  Steps inside, across;
+  const auto add = [&](const Picture& picture, std::size_t from, std::size_t to) {
+    if (picture.surface[from] != Surface::kTerrain || picture.surface[to] != Surface::kTerrain) return;
+    int step = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      step = std::max(step, std::abs(picture.rgb[3 * to + channel] - picture.rgb[3 * from + channel]));
+    (picture.triangle[from] >> 32 == picture.triangle[to] >> 32 ? inside : across).add(step);
+  };
+  for (const double above : {700.0, 1500.0, 3000.0, 5000.0, 9000.0}) {
+    for (const double pitch : {-90.0, -75.0}) {
+      const Picture picture =
+          draw(EngineKind::kFast, memory.database,
+               optionsOf(cameraOver(memory.database, 0.5, 0.5, above, 30, pitch, 320, 240)));
+      for (std::size_t i = 0; i + 1 < 240; ++i) {
+        for (std::size_t j = 0; j + 1 < 320; ++j) {
+          add(picture, i * 320 + j, i * 320 + j + 1);
+          add(picture, i * 320 + j, (i + 1) * 320 + j);
+        }
+      }
+    }
+  }
+  std::printf("%llu steps inside nodes, 99.9 %% up to %d; %llu across borders, largest %d\n",
+              static_cast<unsigned long long>(inside.total), inside.percentile(0.999),
+              static_cast<unsigned long long>(across.total), across.largest());
+  EXPECT_GT(across.total, 10000u);
+  EXPECT_LE(across.largest(), inside.percentile(0.999));
+}
+
 // A bright spot is where it should be, at any level: the centre of its light, brought back from the picture
 // through the depth, lies within half a texel of the finest level. Each pixel counts with the ground it
 // shows, which on a plane grows with the third power of its depth.
