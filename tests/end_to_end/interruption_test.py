@@ -85,6 +85,38 @@ def a_killed_overwrite_leaves_the_old_or_the_new_state(folder):
     require(not left, f"the next run left {left}")
 
 
+@case
+def a_killed_run_leaves_the_old_database_or_the_new_one(folder):
+    print(f"seed {SEED}, {KILLS} kills")
+    moments = random.Random(SEED + "run")
+    work = folder / "work"
+    work.mkdir()
+    small_dem(work)
+    plan, target = work / "build.toml", work / "area.dz"
+    plan.write_text('area = "area.dz"\n[terrain]\nsources = ["small.tif"]\n' +
+                    "".join(f'[[color]]\nname = "{name}"\nsynthetic = "natural"\n' for name in ("a", "b", "c")))
+    command = [program("dbbuild"), "run", plan, "-q", "--overwrite"]
+    whole = duration(command)
+    for exists in (False, True):
+        found = {"old": 0, "new": 0}
+        for _ in range(KILLS):
+            shutil.rmtree(target)
+            if exists:
+                run("dbbuild", "terrain", work / "small.tif", "-o", target)
+            killed_after(moments.uniform(0, 1.05 * whole), command)
+            maps = []
+            if target.exists():
+                run("dbcheck", target)
+                maps = [entry["name"] for entry in run("dbbuild", "info", target, "--json").json()["color_maps"]]
+            require(target.exists() >= exists and maps in ([], ["a", "b", "c"]), f"a state between the steps is seen: {maps}")
+            found["new" if maps else "old"] += 1
+            run("dbbuild", "run", plan, "--overwrite")
+            left = {file.name for file in work.iterdir()} - {"small.tif", "small.asc", "small.prj", "build.toml", "area.dz"}
+            require(not left, f"the next run left {left}")
+        print(found)
+        require(found["old"] > 0, "no kill came before the end")
+
+
 def hills(folder):
     """A mesh that takes a while to simplify."""
     side, lines = 80, []
