@@ -112,6 +112,8 @@ class PlanReader {
         continue;
       }
       for (const std::string& text : texts) {
+        const toml::source_position place = node->source().begin;
+        step.values.push_back({key.name, text, key.is_path, place.line, place.column});
         if (key.positional) {
           step.positionals.push_back(text);
         } else {
@@ -194,6 +196,49 @@ Result<BuildPlan> parseBuildPlan(std::string_view text, const std::string& where
     return usageError(fmt::format("{}, line {}, column {}", where, place.line, place.column),
                       "this is not TOML", std::string(error.description()));
   }
+}
+
+Status checkPlan(const BuildPlan& plan, const std::string& where, const std::vector<PlanNames>& names,
+                 const FileSystem& files) {
+  const auto error_at = [&](const PlanValue& value, std::string what, std::string remedy) {
+    return usageError(fmt::format("{}, line {}, column {}", where, value.line, value.column), std::move(what),
+                      {}, std::move(remedy));
+  };
+  const auto values_of = [&](const std::string& section, const std::string& key) {
+    std::vector<PlanValue> values;
+    for (const PlanStep& step : plan.steps) {
+      for (const PlanValue& value : step.values) {
+        if (step.section == section && value.key == key) values.push_back(value);
+      }
+    }
+    return values;
+  };
+  for (const PlanNames& kind : names) {
+    std::vector<std::string> known;
+    for (const PlanValue& value : values_of(kind.section, kind.name_key)) {
+      if (std::find(known.begin(), known.end(), value.text) != known.end())
+        return error_at(value, fmt::format("the name '{}' is given twice", value.text), "Give each its own");
+      known.push_back(value.text);
+    }
+    if (kind.used_by_section.empty()) continue;
+    for (const PlanValue& value : values_of(kind.used_by_section, kind.used_key)) {
+      if (std::find(known.begin(), known.end(), value.text) != known.end()) continue;
+      return error_at(value, fmt::format("there is no [[{}]] called '{}'", kind.section, value.text),
+                      known.empty() ? fmt::format("Write a [[{}]] of this name", kind.section)
+                                    : suggestion(value.text, known));
+    }
+  }
+  for (const PlanStep& step : plan.steps) {
+    for (const PlanValue& value : step.values) {
+      if (!value.is_path || value.text.find(':') != std::string::npos || value.text.starts_with("/vsi"))
+        continue;
+      const Result<PathType> type = files.typeOf(value.text);
+      if (type.ok() && type.value() == PathType::kAbsent)
+        return error_at(value, fmt::format("there is no file {}", value.text),
+                        "Names are relative to the build file");
+    }
+  }
+  return Success{};
 }
 
 }  // namespace deltaz

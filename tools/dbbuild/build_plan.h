@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/error.h"
+#include "formats/file_system.h"
 
 namespace deltaz {
 
@@ -36,12 +37,20 @@ struct PlanSection {
   std::vector<PlanKey> keys;
 };
 
+// A value as it goes to its command, and where it stands in the file.
+struct PlanValue {
+  std::string key, text;
+  bool is_path = false;
+  std::size_t line = 0, column = 0;
+};
+
 // One command to run.
 struct PlanStep {
   std::string section;
   std::size_t line = 0;                  // of the section's heading
   std::vector<std::string> positionals;  // in the order of the section's keys
   std::vector<std::string> options;      // "--name=value", "--flag"
+  std::vector<PlanValue> values;         // all of them but flags
 };
 
 struct BuildPlan {
@@ -52,5 +61,16 @@ struct BuildPlan {
 // `where` is the build file's name for messages, `folder` what its paths are relative to.
 Result<BuildPlan> parseBuildPlan(std::string_view text, const std::string& where, const std::string& folder,
                                  const std::vector<PlanSection>& schema);
+
+// Names that steps give and other steps use.
+struct PlanNames {
+  std::string section, name_key;          // [[model]], name
+  std::string used_by_section, used_key;  // [[place]], model; empty if none uses them
+};
+// What would fail at a later step and can be known before the first: a name that two steps give, a step that
+// uses a name none gives, a file that is not there. What GDAL alone can find (/vsi..., DRIVER:...) is left to
+// it.
+Status checkPlan(const BuildPlan& plan, const std::string& where, const std::vector<PlanNames>& names,
+                 const FileSystem& files);
 
 }  // namespace deltaz

@@ -115,6 +115,8 @@ class RunCommand final : public Command {
     for (const SectionSource& source : sectionSources()) schema.push_back(sectionOf(source));
     DELTAZ_TRY_ASSIGN(const BuildPlan plan, parseBuildPlan(text, file_, parentPath(file_), schema));
 
+    DELTAZ_TRY(checkPlan(plan, file_, {{"color", "name", "", ""}, {"model", "name", "place", "model"}},
+                         localFileSystem()));
     DELTAZ_TRY_ASSIGN(StagedDatabase staged,
                       StagedDatabase::begin(localFileSystem(), plan.area, common_.overwrite));
     Json reports = Json::array();

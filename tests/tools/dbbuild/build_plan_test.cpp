@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/memory_file_system.h"
+
 namespace deltaz {
 namespace {
 
@@ -15,7 +17,7 @@ const std::vector<PlanSection>& schema() {
         {"bounds", KeyKind::kValue},
         {"allow-ballpark", KeyKind::kFlag}}},
       {"color", true, false, {{"name", KeyKind::kValue}, {"image", KeyKind::kList, true}}},
-      {"place", true, false, {{"at", KeyKind::kList}}},
+      {"place", true, false, {{"at", KeyKind::kList}, {"map", KeyKind::kValue}}},
   };
   return sections;
 }
@@ -96,6 +98,28 @@ TEST(BuildPlan, what_is_missing_is_named) {
   expectIn("'area' is missing", messageOf("[terrain]\nsources = 'd.tif'\n"));
   expectIn("[terrain] is missing", messageOf("area = 'a.dz'\n"));
   expectIn("'sources' is missing", messageOf("area = 'a.dz'\n[terrain]\nleaf = 8\n"));
+}
+
+// What checkPlan says of a file whose folder holds dem.tif alone.
+std::string faultOf(const std::string& sections) {
+  const Result<BuildPlan> plan = planOf("area = 'a.dz'\n[terrain]\nsources = 'dem.tif'\n" + sections);
+  EXPECT_TRUE(plan.ok()) << plan.error().message();
+  MemoryFileSystem files;
+  files.setText("/maps/dem.tif", "posts");
+  const Status checked = checkPlan(plan.value(), "build.toml", {{"color", "name", "place", "map"}}, files);
+  return checked.ok() ? "" : checked.error().message();
+}
+
+TEST(BuildPlan, what_a_later_step_would_find_is_said_before_the_first) {
+  EXPECT_EQ(faultOf("[[color]]\nname = 'x'\n[[color]]\nname = 'y'\n[[place]]\nmap = 'y'\n"), "");
+  const std::string twice = faultOf("[[color]]\nname = 'x'\n[[color]]\nname = 'x'\n");
+  expectIn("line 7, column 8", twice);
+  expectIn("'x' is given twice", twice);
+  expectIn("no [[color]] called 'sumer'. Did you mean 'summer'?",
+           faultOf("[[color]]\nname = 'summer'\n[[place]]\nmap = 'sumer'\n"));
+  expectIn("Write a [[color]]", faultOf("[[place]]\nmap = 'x'\n"));
+  expectIn("there is no file /maps/no.tif", faultOf("[[color]]\nname = 'x'\nimage = 'no.tif'\n"));
+  EXPECT_EQ(faultOf("[[color]]\nname = 'x'\nimage = '/vsizip/maps.zip/no.tif'\n"), "");
 }
 
 TEST(BuildPlan, what_is_not_toml_is_refused_with_its_place) {
