@@ -56,7 +56,7 @@ Status ColorFilter::chunk(const TexelBlock& block, std::span<CoveredColor> color
     if (!any || !field_.touches(inside)) return Success{};
   }
   // Texels coarser than that hold much of the grid each, or all of it, wherever their centres are.
-  if (block.level > root_level_ || field_.isFiner(inside, block.level)) {
+  if (block.level > root_level_ || (block.level > kLowestColorLevel && field_.isFiner(inside, block.level))) {
     const TexelBlock below{block.grid,          block.level - 1,   2 * block.first_column,
                            2 * block.first_row, 2 * block.columns, 2 * block.rows};
     const auto columns = static_cast<std::size_t>(below.columns);

@@ -64,63 +64,105 @@ Status PlacedImage::toPixels(std::span<double> columns, std::span<double> rows) 
   return Success{};
 }
 
-// `points` x `points` places spread over the block from edge to edge; NaN throughout if that fails.
-PixelPlaces PlacedImage::lattice(const TexelBlock& block, int points) const {
+// Whether the image may lie in the block. Columns are followed from place to place, so that a turn of the
+// Earth is no jump.
+bool PlacedImage::touches(const TexelBlock& block) const {
   const double texel = colorTexelCells(grid_.leaf_cells, block.level);
   PixelPlaces places;
-  for (int j = 0; j < points; ++j) {
-    for (int i = 0; i < points; ++i) {
-      const double u = static_cast<double>(i) / (points - 1), v = static_cast<double>(j) / (points - 1);
+  for (int j = 0; j < kProbes; ++j) {
+    for (int i = 0; i < kProbes; ++i) {
+      const double u = i / (kProbes - 1.0), v = j / (kProbes - 1.0);
       places.column.push_back((static_cast<double>(block.first_column) + u * block.columns) * texel);
       places.row.push_back((static_cast<double>(block.first_row) + v * block.rows) * texel);
     }
   }
-  if (!toPixels(places.column, places.row).ok()) {
-    std::fill(places.column.begin(), places.column.end(), std::nan(""));
-  }
-  return places;
-}
-
-bool PlacedImage::touches(const TexelBlock& block) const {
-  const PixelPlaces places = lattice(block, kProbes);
+  if (!toPixels(places.column, places.row).ok()) return true;
+  const double turn = image_.columnsPerTurn();
   std::array<double, 2> columns = {HUGE_VAL, -HUGE_VAL}, rows = {HUGE_VAL, -HUGE_VAL};
-  bool whole = true;
+  std::size_t missing = 0;
+  bool winds = false;
   for (std::size_t k = 0; k < places.column.size(); ++k) {
-    if (!isPlace(places.column[k], places.row[k])) {
-      whole = false;
+    double& column = places.column[k];
+    if (!isPlace(column, places.row[k])) {
+      ++missing;
       continue;
     }
-    columns = {std::min(columns[0], places.column[k]), std::max(columns[1], places.column[k])};
+    const std::size_t before = k % kProbes > 0 ? k - 1 : k < kProbes ? k : k - kProbes;
+    if (turn > 0 && isPlace(places.column[before], places.row[before])) {
+      const double step = std::remainder(column - places.column[before], turn);
+      column = places.column[before] + step;
+      winds = winds || std::abs(step) > 0.25 * turn;
+    }
+    columns = {std::min(columns[0], column), std::max(columns[1], column)};
     rows = {std::min(rows[0], places.row[k]), std::max(rows[1], places.row[k])};
   }
   if (columns[0] > columns[1]) return false;
-  // Between the places the block may reach a little farther; where it leaves the projection's realm,
-  // anywhere.
-  if (!whole) return true;
-  const double slack_x = 1 + (columns[1] - columns[0]) / 8, slack_y = 1 + (rows[1] - rows[0]) / 8;
-  const bool beside = columns[1] + slack_x < 0 || columns[0] - slack_x > image_.columns();
-  return (image_.closesRound() || !beside) && rows[1] + slack_y >= 0 && rows[0] - slack_y <= image_.rows();
+  // Where much of the block has left the projection's realm the rest tells little of it.
+  if (missing > places.column.size() / 4) return true;
+  // Between the places the block may reach a little farther, and farther still beyond the last good one.
+  double slack_x = 1 + (columns[1] - columns[0]) / 8, slack_y = 1 + (rows[1] - rows[0]) / 8;
+  if (missing > 0) slack_x = slack_y = 8 * std::max(slack_x, slack_y);
+  if (rows[1] + slack_y < 0 || rows[0] - slack_y > image_.rows()) return false;
+  const double west = columns[0] - slack_x, east = columns[1] + slack_x;
+  if (turn > 0) return winds || west - turn * std::floor(east / turn) <= image_.columns();
+  return east >= 0 && west <= image_.columns();
 }
 
+// Measured where the places of a lattice lie in the image, or at the one nearest to it if none does.
 double PlacedImage::pixelsPerTexel(const TexelBlock& block, int level) const {
   constexpr int kPoints = 5;
-  const PixelPlaces places = lattice(block, kPoints);
-  const double texels_x = block.columns / (kPoints - 1.0), texels_y = block.rows / (kPoints - 1.0);
-  double longest = 0;
-  const auto include = [&](std::size_t a, std::size_t b, double texels) {
-    const double x = places.column[b] - places.column[a], y = places.row[b] - places.row[a];
-    // Where longitudes jump by a turn the distance means nothing.
-    if (!std::isfinite(x) || !std::isfinite(y)) return;
-    if (image_.closesRound() && std::abs(x) > 0.5 * image_.columns()) return;
-    longest = std::max(longest, std::hypot(x, y) / texels);
-  };
-  for (std::size_t j = 0; j < kPoints; ++j) {
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      if (i + 1 < kPoints) include(j * kPoints + i, j * kPoints + i + 1, texels_x);
-      if (j + 1 < kPoints) include(j * kPoints + i, (j + 1) * kPoints + i, texels_y);
+  constexpr std::size_t kAround = 5;  // a place and those to the east, west, north and south
+  const double texel = colorTexelCells(grid_.leaf_cells, block.level);
+  const double step_x = block.columns / 64.0, step_y = block.rows / 64.0;  // texels of the block
+  PixelPlaces places;
+  for (int j = 0; j < kPoints; ++j) {
+    for (int i = 0; i < kPoints; ++i) {
+      const double x = static_cast<double>(block.first_column) + block.columns * i / (kPoints - 1.0),
+                   y = static_cast<double>(block.first_row) + block.rows * j / (kPoints - 1.0);
+      for (const double dx : {0.0, step_x, -step_x, 0.0, 0.0}) places.column.push_back((x + dx) * texel);
+      for (const double dy : {0.0, 0.0, 0.0, step_y, -step_y}) places.row.push_back((y + dy) * texel);
     }
   }
+  if (!toPixels(places.column, places.row).ok()) return 0;
+  double longest = 0, nearest = HUGE_VAL;
+  for (std::size_t k = 0; k < places.column.size(); k += kAround) {
+    const double x = places.column[k], y = places.row[k];
+    if (!isPlace(x, y)) continue;
+    const double away =
+        std::hypot(std::max({0.0, -x, x - image_.columns()}), std::max({0.0, -y, y - image_.rows()}));
+    if (away > nearest) continue;
+    const std::optional<double> pixels = longestStep(places, k, step_x, step_y);
+    if (!pixels) continue;
+    longest = away < nearest ? *pixels : std::max(longest, *pixels);
+    nearest = away;
+  }
   return std::ldexp(longest, level - block.level);
+}
+
+// The longest side of a texel, pixels, from a place and the four around it; nothing where they have none.
+std::optional<double> PlacedImage::longestStep(const PixelPlaces& places, std::size_t here, double texels_x,
+                                               double texels_y) const {
+  // Of the steps to both sides the shorter: the other may lead over a seam of the projection.
+  const auto step = [&](std::size_t a, std::size_t b, double texels) {
+    std::array<double, 2> shorter = {HUGE_VAL, HUGE_VAL};
+    for (const std::size_t there : {a, b}) {
+      const std::array<double, 2> to = {(places.column[there] - places.column[here]) / texels,
+                                        (places.row[there] - places.row[here]) / texels};
+      if (isPlace(to[0], to[1]) && std::hypot(to[0], to[1]) < std::hypot(shorter[0], shorter[1]))
+        shorter = to;
+    }
+    return shorter;
+  };
+  const auto along = step(here + 1, here + 2, texels_x), across = step(here + 3, here + 4, texels_y);
+  double longest = std::max(std::hypot(along[0], along[1]), std::hypot(across[0], across[1]));
+  if (!std::isfinite(longest)) return {};
+  if (!image_.hasTurn()) return longest;
+  // Towards a pole pixels become ever narrower, but no less high.
+  constexpr double kNarrowest = 1.0 / 16;
+  const auto a = image_.coordinateStep(along[0], along[1]), b = image_.coordinateStep(across[0], across[1]);
+  const double east = std::hypot(a[0], b[0]), north = std::hypot(a[1], b[1]);
+  if (east * kNarrowest > north) longest *= north / (east * kNarrowest);
+  return longest;
 }
 
 Result<PixelPlaces> PlacedImage::centres(const TexelBlock& block) const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,8 @@ class PlacedImage {
   const ColorImage& image() const { return image_; }
   // Whether the image may lie in the block; only a coarse answer where the image is bent there.
   bool touches(const TexelBlock& block) const;
-  // The longest side of texels of `level` in the block, pixels.
+  // The longest side of texels of `level` in the block, pixels, where the image is. Towards the poles of an
+  // image in degrees no pixel counts as narrower than a 16th of its height.
   double pixelsPerTexel(const TexelBlock& block, int level) const;
   // The centres of the block's texels, row by row.
   Result<PixelPlaces> centres(const TexelBlock& block) const;
@@ -39,7 +41,8 @@ class PlacedImage {
   // Exactly, through PROJ. `posts`: columns and rows of level-0 posts, become pixels.
   Status toPixels(std::span<double> columns, std::span<double> rows) const;
   Status fill(const TexelBlock& block, int column, int row, int columns, int rows, PixelPlaces& places) const;
-  PixelPlaces lattice(const TexelBlock& block, int points) const;
+  std::optional<double> longestStep(const PixelPlaces& places, std::size_t here, double texels_x,
+                                    double texels_y) const;
 
   const GridHeader& grid_;
   const ColorImage& image_;

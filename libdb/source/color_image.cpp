@@ -12,6 +12,7 @@
 #include "libdb/source/source_error.h"
 #include "libdb/source/source_opening.h"
 #include "libdb/source/stated_system.h"
+#include "libdb/source/turn_length.h"
 
 namespace deltaz {
 
@@ -75,11 +76,12 @@ Result<ColorImage> ColorImage::open(const std::string& path, const ColorImageOpt
   DELTAZ_TRY_ASSIGN(image.system_, statedSystem(dataset, path, options.crs, warnings));
   image.classes_ = options.classes;
   image.opened_->legend = options.legend;
-  if (!image.system_.projected) {
-    image.middle_ = image.coordinatesAt(0.5 * image.columns_, 0.5 * image.rows_)[0];
-    const double turn = image.transform_[1] * image.columns_;
+  image.turn_ = turnLength(image.system_);
+  image.middle_ = image.coordinatesAt(0.5 * image.columns_, 0.5 * image.rows_)[0];
+  if (image.hasTurn()) {
+    const double width = std::abs(image.transform_[1]) * image.columns_;
     image.closes_round_ = image.transform_[2] == 0 && image.transform_[4] == 0 &&
-                          std::abs(std::abs(turn) - 360) <= kFullTurnSlack * std::abs(image.transform_[1]);
+                          std::abs(width - image.turn_) <= kFullTurnSlack * std::abs(image.transform_[1]);
   }
   image.source_.name = baseName(path);
   DELTAZ_TRY_ASSIGN(image.source_.content, hashOfContent(path, membersOfVirtual(dataset)));
@@ -91,11 +93,19 @@ std::array<double, 2> ColorImage::coordinatesAt(double column, double row) const
           transform_[3] + column * transform_[4] + row * transform_[5]};
 }
 
+double ColorImage::columnsPerTurn() const {
+  return inverse_[4] == 0 ? std::abs(inverse_[1]) * turn_ : 0;
+}
+
+std::array<double, 2> ColorImage::coordinateStep(double columns, double rows) const {
+  return {columns * transform_[1] + rows * transform_[2], columns * transform_[4] + rows * transform_[5]};
+}
+
 void ColorImage::toPixels(std::span<double> x, std::span<double> y) const {
   for (std::size_t k = 0; k < x.size(); ++k) {
     double east = x[k];
     const double north = y[k];
-    if (!system_.projected) east -= 360 * std::round((east - middle_) / 360);
+    if (hasTurn()) east -= turn_ * std::round((east - middle_) / turn_);
     x[k] = inverse_[0] + east * inverse_[1] + north * inverse_[2];
     y[k] = inverse_[3] + east * inverse_[4] + north * inverse_[5];
   }

@@ -52,13 +52,19 @@ class ColorImage {
   // Pixels are numbers that must not be mixed: take the nearest.
   bool isOfClasses() const { return classes_; }
 
-  // Coordinates of the image's system (x east) into pixels, in place. Longitudes are brought to within half a
-  // turn of the image's middle.
+  // Coordinates of the image's system (x east) into pixels, in place. Where the Earth repeats itself to the
+  // east (turnLength) they are brought to within half a turn of the image's middle.
   void toPixels(std::span<double> x, std::span<double> y) const;
   // Coordinates of a place in the image, pixels.
   std::array<double, 2> coordinatesAt(double column, double row) const;
   // It goes once round the Earth: its first column follows its last.
   bool closesRound() const { return closes_round_; }
+  // Whether the Earth repeats itself to the east in the image's system.
+  bool hasTurn() const { return turn_ > 0; }
+  // Columns after which the same places come again along a row; 0 where they never do.
+  double columnsPerTurn() const;
+  // A step in pixels as one in the image's coordinates.
+  std::array<double, 2> coordinateStep(double columns, double rows) const;
 
   // The colours of a window that lies in the image, row by row from its first.
   Status read(const PixelWindow& window, std::span<CoveredColor> colors) const;
@@ -76,7 +82,8 @@ class ColorImage {
   int columns_ = 0, rows_ = 0;
   bool classes_ = false, closes_round_ = false;
   std::array<double, 6> transform_{}, inverse_{};  // GDAL's, pixels to coordinates and back
-  double middle_ = 0;                              // longitude; geographic systems only
+  double turn_ = 0;                                // turnLength of the system
+  double middle_ = 0;                              // of the image, along x
   std::unique_ptr<Opened> opened_;
 };
 

@@ -264,6 +264,82 @@ TEST(BuildColor, a_place_is_found_on_a_projected_grid) {
   EXPECT_NEAR((found[1] + y.phase) * y.spacing, northing, 0.25 * texel * y.spacing);
 }
 
+std::string wktOf(const std::string& crs) {
+  OGRSpatialReference reference;
+  reference.SetFromUserInput(crs.c_str());
+  char* wkt = nullptr;
+  reference.exportToWkt(&wkt);
+  std::string text = wkt;
+  CPLFree(wkt);
+  return text;
+}
+
+TEST(BuildColor, an_image_in_degrees_ends_where_all_its_meridians_meet) {
+  const TemporaryDirectory folder;
+  // 121 x 121 posts of 1 km around the pole.
+  RawGrid grid = projectedGrid({.easting = -60000, .northing = -60000, .spacing = 1000});
+  grid.header.crs_wkt = wktOf("EPSG:3413");
+  TestImage image;
+  image.columns = 720;
+  image.rows = 30;
+  image.transform = {-180, 0.5, 0, 90, 0, -0.5};
+  image.color = [](int column, int) { return Code{static_cast<std::uint8_t>(column / 4), 90, 30, 255}; };
+  const Database database = opened(withMap(ofImages({makeImage(folder, image, "pole.tif")}), grid));
+  // A 16th of half a degree of latitude is 3.5 km.
+  EXPECT_EQ(mapOf(database).treeOf(0)->finest_level, 2);
+  for (const double column : {-50.0, -3.0, 0.5, 40.0}) {
+    for (const double row : {-50.0, -3.0, 0.5, 40.0})
+      EXPECT_EQ(texelAt(mapOf(database), column, row)[3], 255) << column << " " << row;
+  }
+}
+
+TEST(BuildColor, a_place_is_found_on_both_sides_of_the_antimeridian_in_an_image_across_it) {
+  SyntheticGridOptions options;
+  options.south = -16;
+  options.west = 179.5;
+  const RawGrid grid = syntheticGrid(options);
+  constexpr double kEquatorialRadius = 6378137, kRadians = 3.14159265358979323846 / 180;
+  const double latitude = -15.52;
+  for (const double longitude : {179.99, 180.01, 180.2}) {
+    Disc disc{"EPSG:3857", 130, kEquatorialRadius * longitude * kRadians,
+              kEquatorialRadius * std::asinh(std::tan(latitude * kRadians)), 0};
+    double texel = 0;
+    const auto found = centroidOfDisc(disc, grid, texel);
+    EXPECT_LE(texel, 0.5);
+    EXPECT_NEAR(found[0],
+                static_cast<double>(grid.header.x_axis.first) + (longitude - options.west) / kSpacing,
+                0.25 * texel)
+        << longitude;
+    EXPECT_NEAR(found[1],
+                static_cast<double>(grid.header.y_axis.first) + (latitude - options.south) / kSpacing,
+                0.25 * texel)
+        << longitude;
+  }
+}
+
+TEST(BuildColor, mercators_image_is_no_finer_beyond_its_end_at_the_pole) {
+  const TemporaryDirectory folder;
+  SyntheticGridOptions options;
+  options.south = 80;
+  options.spacing_latitude = options.spacing_longitude = {300, 1};
+  const RawGrid grid = syntheticGrid(options);  // to the pole
+  TestImage image;
+  constexpr double kHalfTurn = 20037508.342789244;
+  image.crs = "EPSG:3857";
+  image.columns = image.rows = 400;
+  image.transform = {-kHalfTurn, kHalfTurn / 200, 0, kHalfTurn, 0, -kHalfTurn / 200};
+  image.color = [](int, int) { return Code{10, 200, 30, 255}; };
+  const Database database = opened(withMap(ofImages({makeImage(folder, image, "world.tif")}), grid));
+  // At its end, 85.05 degrees, a pixel is 0.0777 degrees from south to north, 0.93 cells: a texel of level 0
+  // is half a cell.
+  EXPECT_GE(mapOf(database).treeOf(0)->finest_level, 0);
+  const GridAxis &x = grid.header.x_axis, &y = grid.header.y_axis;
+  EXPECT_EQ(texelAt(mapOf(database), static_cast<double>(x.first) + 50, static_cast<double>(y.first) + 55)[3],
+            255);
+  EXPECT_EQ(texelAt(mapOf(database), static_cast<double>(x.first) + 50, static_cast<double>(y.first) + 70)[3],
+            0);
+}
+
 TEST(BuildColor, a_size_in_metres_is_met_whatever_the_projections_scale) {
   RawGrid grid = projectedGrid();  // cells of 30 m, of 30.012 m on the ground
   ColorBuildOptions options;
