@@ -10,6 +10,8 @@
 #include <queue>
 #include <vector>
 
+#include "libdb/build/mesh_overlay.h"
+
 namespace deltaz {
 
 namespace {
@@ -38,13 +40,14 @@ struct Corner {
 struct Piece {
   double bound = 0;
   std::array<Corner, 3> corners;
+  bool overlaid = false;  // lies under one triangle already, seen along its normal
   bool operator<(const Piece& other) const { return bound < other.bound; }
 };
 
 class OneSided {
  public:
   OneSided(const TriangleView& from, const NearestTriangle& to, double least)
-      : from_(from), to_(to), least_(least) {}
+      : from_(from), to_(to), overlay_(to.mesh()), least_(least) {}
 
   // Never less than the distance of any point of `from`; `found` is one that is there.
   double bound(double& found) {
@@ -52,10 +55,10 @@ class OneSided {
     std::vector<Corner> at_posts;
     for (const Vector3& p : from_.positions) at_posts.push_back(cornerAt(p));
     for (const auto& triangle : from_.triangles)
-      push({at_posts[triangle[0]], at_posts[triangle[1]], at_posts[triangle[2]]});
+      push({at_posts[triangle[0]], at_posts[triangle[1]], at_posts[triangle[2]]}, false);
     // Beyond this many the bound stays looser; it holds all the same.
-    constexpr int kMostSplits = 400000;
-    for (int splits = 0; splits < kMostSplits && !pieces_.empty(); ++splits) {
+    const std::size_t most = 400000 + 2 * (from_.triangles.size() + to_.mesh().triangles.size());
+    for (std::size_t splits = 0; splits < most && !pieces_.empty(); ++splits) {
       const Piece worst = pieces_.top();
       if (worst.bound <= enough()) break;
       pieces_.pop();
@@ -75,8 +78,8 @@ class OneSided {
     return corner;
   }
 
-  void push(const std::array<Corner, 3>& corners) {
-    Piece piece{std::numeric_limits<double>::infinity(), corners};
+  void push(const std::array<Corner, 3>& corners, bool overlaid) {
+    Piece piece{std::numeric_limits<double>::infinity(), corners, overlaid};
     for (std::size_t k = 0; k < 3; ++k) {
       // Through the triangle nearest to one corner, and by how far the others are from that corner.
       const std::array<Vector3, 3> target = to_.mesh().corners(corners[k].nearest);
@@ -95,19 +98,47 @@ class OneSided {
     }
   }
 
-  // Cut along the edges of the triangle nearest to its middle, as far as they cross it: what lies over that
-  // triangle is settled by it at once. Else into four.
+  // Cut along the edges of all triangles that lie over it; if that does not work, along those of the one
+  // nearest to its middle, as far as they cross it: what lies over that triangle is settled by it at once.
+  // Else into four.
   void split(const Piece& piece) {
     const auto& [a, b, c] = piece.corners;
     const Vector3 middle = (a.position + b.position + c.position) * (1.0 / 3);
-    if (cut(piece, to_.mesh().corners(to_.find(middle)))) return;
+    const std::size_t nearest = to_.find(middle);
+    bool few = true;
+    if (!piece.overlaid) {
+      if (overlay(piece, nearest)) return;
+      // Cutting one off many triangles leaves almost all of them to be met again.
+      constexpr std::size_t kFew = 16;
+      few = overlay_.visited() < kFew;
+    }
+    if (few && cut(piece, to_.mesh().corners(nearest))) return;
     const Corner ab = cornerAt((a.position + b.position) * 0.5);
     const Corner bc = cornerAt((b.position + c.position) * 0.5);
     const Corner ca = cornerAt((c.position + a.position) * 0.5);
-    push({a, ab, ca});
-    push({ab, b, bc});
-    push({ca, bc, c});
-    push({ab, bc, ca});
+    push({a, ab, ca}, piece.overlaid);
+    push({ab, b, bc}, piece.overlaid);
+    push({ca, bc, c}, piece.overlaid);
+    push({ab, bc, ca}, piece.overlaid);
+  }
+
+  bool overlay(const Piece& piece, std::size_t nearest) {
+    const auto& [a, b, c] = piece.corners;
+    const std::vector<OverlayPart> parts = overlay_.over({a.position, b.position, c.position}, nearest);
+    for (const OverlayPart& part : parts) {
+      double through = 0;
+      for (const Vector3& p : part.polygon)
+        through = std::max(through, distanceTo(to_.mesh().corners(part.triangle), p));
+      // Nearest triangles are looked for only where it could matter.
+      if (through <= enough()) {
+        settled_ = std::max(settled_, through);
+        continue;
+      }
+      std::vector<Corner> corners;
+      for (const Vector3& p : part.polygon) corners.push_back(cornerAt(p));
+      pushPolygon(corners, true);
+    }
+    return !parts.empty();
   }
 
   bool cut(const Piece& piece, const std::array<Vector3, 3>& target) {
@@ -127,8 +158,8 @@ class OneSided {
       if (!left.empty()) outside.push_back(std::move(left));
     }
     if (outside.empty() || inside.empty()) return false;
-    pushPolygon(inside);
-    for (const std::vector<Corner>& polygon : outside) pushPolygon(polygon);
+    pushPolygon(inside, piece.overlaid);
+    for (const std::vector<Corner>& polygon : outside) pushPolygon(polygon, piece.overlaid);
     return true;
   }
 
@@ -163,14 +194,15 @@ class OneSided {
     polygon.swap(kept);
   }
 
-  void pushPolygon(const std::vector<Corner>& polygon) {
-    for (std::size_t k = 2; k < polygon.size(); ++k) push({polygon[0], polygon[k - 1], polygon[k]});
+  void pushPolygon(const std::vector<Corner>& polygon, bool overlaid) {
+    for (std::size_t k = 2; k < polygon.size(); ++k) push({polygon[0], polygon[k - 1], polygon[k]}, overlaid);
   }
 
   static constexpr double kSliver = 1e-6;  // of a piece's size
 
   const TriangleView& from_;
   const NearestTriangle& to_;
+  MeshOverlay overlay_;
   double least_;
   double found_ = 0, settled_ = 0;
   std::priority_queue<Piece> pieces_;

@@ -4,28 +4,19 @@
 // Branch and bound over the triangles of one mesh: where the distance at the corners is known, the distance
 // to one and the same triangle of the other mesh at the corners bounds that of everything between, since the
 // distance to a convex set is convex. Triangles that could still decide are cut along the edges of the other
-// mesh until bound and largest distance found agree. Source: CGAL's AABB tree finds nearest triangles; what
+// mesh, all of it that lies over them at once where it is whole there (mesh_overlay.h), until bound and
+// largest distance found agree. Source: CGAL's AABB tree finds nearest triangles; what
 // it answers decides speed and tightness alone, never that the bound holds. Thread-safety: const members from
 // any thread.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <memory>
-#include <span>
 
 #include "libdb/access/vector3.h"
+#include "libdb/build/triangle_view.h"
 
 namespace deltaz {
-
-// Triangles by their corners; none of them without an area.
-struct TriangleView {
-  std::span<const Vector3> positions;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  std::array<Vector3, 3> corners(std::size_t t) const {
-    return {positions[triangles[t][0]], positions[triangles[t][1]], positions[triangles[t][2]]};
-  }
-};
 
 // Of the triangle `corners`, the weights of its corners in the point nearest to p.
 std::array<double, 3> nearestWeights(const std::array<Vector3, 3>& corners, const Vector3& p);

@@ -90,6 +90,19 @@ TEST(MeshDistance, is_never_less_and_little_more_than_what_samples_find) {
   }
 }
 
+TEST(MeshDistance, stays_tight_where_a_coarse_mesh_lies_among_very_many_triangles) {
+  // Rough everywhere, so that every place could decide; farthest are the peaks.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> amount(-1, 1);
+  const double height = 0.0015;
+  const Soup fine = sheet(400, [&](double, double) { return height * amount(random); });
+  double peak = 0;
+  for (const Vector3& p : fine.positions) peak = std::max(peak, std::abs(p.z));
+  const double found = bound(sheet(1, [](double, double) { return 0.0; }), fine);
+  EXPECT_GE(found, peak);
+  EXPECT_LE(found, peak * (1 + kDistanceTightness));
+}
+
 TEST(MeshDistance, nearest_weights_find_the_nearest_point) {
   const std::array<Vector3, 3> triangle = {Vector3{0, 0, 0}, Vector3{1, 0, 0}, Vector3{0.2, 0.8, 0.1}};
   std::mt19937 random(3);
