@@ -175,7 +175,31 @@ bool endsWhole(const std::vector<std::byte>& bytes) {
   return tail.find("endsolid") != std::string::npos || tail.find("ENDSOLID") != std::string::npos;
 }
 
+// OpenMesh reads a header without an end until memory is gone, and makes room for as many elements as one
+// announces.
+// "" if the header of a PLY ends and announces no more elements than there are bytes behind it.
+std::string faultOfPly(const std::vector<std::byte>& bytes) {
+  constexpr std::size_t kLongestHeader = 1 << 16;
+  const std::string head(static_cast<const char*>(static_cast<const void*>(bytes.data())),
+                         std::min(bytes.size(), kLongestHeader));
+  const std::size_t end = head.find("end_header");
+  if (end == std::string::npos) return "its header does not end";
+  std::istringstream lines(head.substr(0, end));
+  for (std::string word, name; lines >> word;) {
+    if (word != "element") continue;
+    double count = 0;
+    if (!(lines >> name >> count) || !(count >= 0)) return "an element of its header has no count";
+    if (count > static_cast<double>(bytes.size() - end))
+      return fmt::format("it announces {:.0f} elements '{}' and has {} bytes for them", count, name,
+                         bytes.size() - end);
+  }
+  return "";
+}
+
 Result<RawScene> read(const std::string& path, const std::vector<std::byte>& bytes) {
+  if (bytes.size() >= 3 && std::memcmp(bytes.data(), "ply", 3) == 0) {
+    if (const std::string fault = faultOfPly(bytes); !fault.empty()) return damaged(path, fault);
+  }
   const bool stl =
       path.size() > 4 && (path.ends_with(".stl") || path.ends_with(".STL") || path.ends_with(".Stl"));
   if (stl) {

@@ -69,7 +69,7 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["-j"], ["dbbuild", "terrain", dem, "-o", out, "-j", "0"]),
             (["-j"], ["dbbuild", "terrain", dem, "-o", out, "-j", "two"]),
             (["--progress"], ["dbbuild", "terrain", dem, "-o", out, "--progress", "loud"]),
-            (["gc"], ["dbbuild", "gc", area]),
+            (["tin"], ["dbbuild", "tin", area]),
             (["subcommand"], ["dbbuild"]),
             (["--level"], ["dbbuild", "export", area, "-o", folder / "x.tif", "--level", "40"]),
             (["--grid"], ["dbbuild", "export", area, "-o", folder / "x.tif", "--grid", "7"]),

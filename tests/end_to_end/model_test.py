@@ -98,7 +98,7 @@ def broken_meshes_are_refused_and_lose_nothing(folder):
     broken = {"empty.obj": "", "nan.obj": text.replace("v 10 6 4", "v nan 6 4"), "far.obj": text.replace("v 10 6 4", "v 1e20 6 4"),
               "index.obj": text.replace("f 1 4 3 2", "f 1 4 3 99"), "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n",
               "points.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\n", "notes.txt": "hello", "cut.ply": "ply\nformat ascii 1.0\nelement vertex 9\n",
-              "cut.stl": "solid x\nfacet normal 0 0 1\n", "cut.off": "OFF\n3 1 0\n0 0 0\n", "cut.gltf": '{"asset":', "cut.glb": "glTF\x02"}
+              "huge.ply": "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n0\n", "cut.stl": "solid x\nfacet normal 0 0 1\n", "cut.off": "OFF\n3 1 0\n0 0 0\n", "cut.gltf": '{"asset":', "cut.glb": "glTF\x02"}
     for name, content in broken.items():
         path = folder / name
         path.write_text(content)
