@@ -14,18 +14,17 @@ class ColorFilter {
   // All must outlive it.
   ColorFilter(const ColorField& field, const GridHeader& grid);
 
-  // Row by row from the south-west. No cover outside the grid's extent. Cost: a sample for each texel of the
-  // field's own fineness; memory 100 kB a level on the way there.
+  // Row by row from the south-west. Texels that hold nothing of the grid repeat the nearest that does, so
+  // that colours are unmixed up to its edge. Cost: a sample for each texel of the field's own fineness;
+  // memory 100 kB a level on the way there.
   Status texels(const TexelBlock& block, std::span<CoveredColor> colors) const;
 
  private:
   Status chunk(const TexelBlock& block, std::span<CoveredColor> colors) const;
-  bool meetsExtent(const TexelBlock& block) const;
 
   const ColorField& field_;
-  int leaf_cells_;
+  const GridHeader& grid_;
   int root_level_;
-  ColorExtent extent_;
 };
 
 }  // namespace deltaz

@@ -19,9 +19,15 @@ Cells cellsOf(const GridAxis& axis) {
   return {first, first + static_cast<double>(axis.count - 1)};
 }
 
-// Node numbers that meet the cells, first and last.
+// Numbers of nodes, or texels, that meet the cells, first and last.
 std::array<double, 2> nodesOver(const Cells& cells, double node) {
   return {std::floor(cells.begin / node), std::ceil(cells.end / node) - 1};
+}
+
+PlaneSpan spanOver(const GridHeader& grid, double side) {
+  const auto columns = nodesOver(cellsOf(grid.x_axis), side), rows = nodesOver(cellsOf(grid.y_axis), side);
+  return {static_cast<std::int64_t>(columns[0]), static_cast<std::int64_t>(columns[1]),
+          static_cast<std::int64_t>(rows[0]), static_cast<std::int64_t>(rows[1])};
 }
 
 class Planner {
@@ -32,16 +38,13 @@ class Planner {
         grid_(grid),
         field_(field),
         last_level_(last_level),
-        root_level_(colorRootLevel(grid)),
-        extent_(colorExtent(grid)) {}
+        root_level_(colorRootLevel(grid)) {}
 
   std::vector<PlannedTile> run() {
     const int level = root_level_ + kColorFarLevels;
-    const double node = colorNodeCells(grid_.leaf_cells, level);
-    const auto columns = nodesOver(cellsOf(grid_.x_axis), node),
-               rows = nodesOver(cellsOf(grid_.y_axis), node);
-    for (double y = rows[0]; y <= rows[1]; ++y) {
-      for (double x = columns[0]; x <= columns[1]; ++x) {
+    const PlaneSpan span = nodesOverGrid(grid_, level);
+    for (std::int64_t y = span.first_row; y <= span.last_row; ++y) {
+      for (std::int64_t x = span.first_column; x <= span.last_column; ++x) {
         (void)plan({number_, static_cast<std::int8_t>(level), static_cast<std::int32_t>(x),
                     static_cast<std::int32_t>(y)});
       }
@@ -51,10 +54,8 @@ class Planner {
 
  private:
   bool meetsGrid(const ColorPlace& place) const {
-    const double node = colorNodeCells(grid_.leaf_cells, place.level);
-    const auto columns = nodesOver(cellsOf(grid_.x_axis), node),
-               rows = nodesOver(cellsOf(grid_.y_axis), node);
-    return place.x >= columns[0] && place.x <= columns[1] && place.y >= rows[0] && place.y <= rows[1];
+    const PlaneSpan span = nodesOverGrid(grid_, place.level);
+    return span.holdsColumn(place.x) && span.holdsRow(place.y);
   }
 
   // A child's number must have room in 32 bits.
@@ -69,8 +70,8 @@ class Planner {
     if (!meetsGrid(place)) return kNoTile;
     // Coarser texels may have no centre in the grid at all.
     const int level = std::min<int>(place.level, root_level_);
-    const TexelBlock block = clippedBlock(blockOf(place, level), grid_.leaf_cells, extent_);
-    if (block.columns == 0 || block.rows == 0 || !field_.touches(block)) return kNoTile;
+    const TexelBlock block = clampedBlock(blockOf(place, level), texelsOverGrid(grid_, level));
+    if (!field_.touches(block)) return kNoTile;
     PlannedTile tile;
     tile.place = place;
     const bool finer = last_level_ ? place.level > *last_level_ : field_.isFiner(block, place.level);
@@ -91,18 +92,8 @@ class Planner {
   const ColorField& field_;
   std::optional<int> last_level_;
   int root_level_;
-  ColorExtent extent_;
   std::vector<PlannedTile> tiles_;
 };
-
-// The first and last of `count` texels from `first` on whose centres lie between; nothing left: first > last.
-std::array<std::int64_t, 2> centresBetween(std::int64_t first, int count, double texel, double low,
-                                           double high) {
-  const double from = std::max(std::ceil(low / texel - 0.5), static_cast<double>(first));
-  const double to = std::min(std::floor(high / texel - 0.5), static_cast<double>(first + count - 1));
-  if (!(from <= to)) return {0, -1};
-  return {static_cast<std::int64_t>(from), static_cast<std::int64_t>(to)};
-}
 
 }  // namespace
 
@@ -120,22 +111,37 @@ int colorRootLevel(const GridHeader& grid) {
   return level;
 }
 
-ColorExtent colorExtent(const GridHeader& grid) {
-  const double margin = colorTexelCells(grid.leaf_cells, colorRootLevel(grid));
-  const Cells x = cellsOf(grid.x_axis), y = cellsOf(grid.y_axis);
-  return {x.begin - margin, y.begin - margin, x.end + margin, y.end + margin};
+PlaneSpan nodesOverGrid(const GridHeader& grid, int level) {
+  return spanOver(grid, colorNodeCells(grid.leaf_cells, level));
 }
 
-TexelBlock clippedBlock(const TexelBlock& block, int leaf_cells, const ColorExtent& extent) {
-  const double texel = colorTexelCells(leaf_cells, block.level);
-  const auto columns = centresBetween(block.first_column, block.columns, texel, extent.west, extent.east);
-  const auto rows = centresBetween(block.first_row, block.rows, texel, extent.south, extent.north);
-  TexelBlock clipped = block;
-  clipped.first_column = columns[0];
-  clipped.first_row = rows[0];
-  clipped.columns = static_cast<int>(columns[1] - columns[0] + 1);
-  clipped.rows = static_cast<int>(rows[1] - rows[0] + 1);
-  return clipped;
+PlaneSpan texelsOverGrid(const GridHeader& grid, int level) {
+  return spanOver(grid, colorTexelCells(grid.leaf_cells, level));
+}
+
+std::optional<PlaneSpan> centresOverGrid(const GridHeader& grid, int level) {
+  const double texel = colorTexelCells(grid.leaf_cells, level);
+  const auto between = [&](const Cells& cells) {
+    return std::array<std::int64_t, 2>{static_cast<std::int64_t>(std::ceil(cells.begin / texel - 0.5)),
+                                       static_cast<std::int64_t>(std::floor(cells.end / texel - 0.5))};
+  };
+  const auto columns = between(cellsOf(grid.x_axis)), rows = between(cellsOf(grid.y_axis));
+  if (columns[0] > columns[1] || rows[0] > rows[1]) return {};
+  return PlaneSpan{columns[0], columns[1], rows[0], rows[1]};
+}
+
+TexelBlock clampedBlock(const TexelBlock& block, const PlaneSpan& span) {
+  const auto column = [&](std::int64_t index) {
+    return std::clamp(index, span.first_column, span.last_column);
+  };
+  const auto row = [&](std::int64_t index) { return std::clamp(index, span.first_row, span.last_row); };
+  TexelBlock clamped = block;
+  clamped.first_column = column(block.first_column);
+  clamped.first_row = row(block.first_row);
+  clamped.columns =
+      static_cast<int>(column(block.first_column + block.columns - 1) - clamped.first_column) + 1;
+  clamped.rows = static_cast<int>(row(block.first_row + block.rows - 1) - clamped.first_row) + 1;
+  return clamped;
 }
 
 TexelBlock blockOf(const ColorPlace& place, int level) {

@@ -26,18 +26,23 @@ struct PlannedTile {
   std::array<std::int32_t, 4> children = {kNoTile, kNoTile, kNoTile, kNoTile};  // 1 SW, 2 SE, 3 NE, 4 NW
 };
 
-// The part of a grid's plane for which a field is asked, level-0 posts: the grid and a margin, so that what
-// lies at its edge is filtered whole.
-struct ColorExtent {
-  double west = 0, south = 0, east = 0, north = 0;
+// Whole numbers of nodes or texels along both axes, first and last.
+struct PlaneSpan {
+  std::int64_t first_column = 0, last_column = -1, first_row = 0, last_row = -1;
+  bool holdsColumn(std::int64_t column) const { return column >= first_column && column <= last_column; }
+  bool holdsRow(std::int64_t row) const { return row >= first_row && row <= last_row; }
 };
-ColorExtent colorExtent(const GridHeader& grid);
+// Those of a level that hold a part of the grid.
+PlaneSpan nodesOverGrid(const GridHeader& grid, int level);
+PlaneSpan texelsOverGrid(const GridHeader& grid, int level);
+// The texels whose centres lie in the grid; nothing if it is thinner than a texel and falls between them.
+std::optional<PlaneSpan> centresOverGrid(const GridHeader& grid, int level);
 
 // The first level, from below, whose nodes hold the grid two by two.
 int colorRootLevel(const GridHeader& grid);
 
-// The texels of a block whose centres lie inside; none: columns or rows are 0.
-TexelBlock clippedBlock(const TexelBlock& block, int leaf_cells, const ColorExtent& extent);
+// The texels of the span nearest to those of a block: at least one.
+TexelBlock clampedBlock(const TexelBlock& block, const PlaneSpan& span);
 
 // The texels of a node, of its own level or a finer one.
 TexelBlock blockOf(const ColorPlace& place, int level);

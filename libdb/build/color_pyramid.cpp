@@ -43,7 +43,8 @@ class PyramidBuild {
  public:
   PyramidBuild(std::uint16_t number, const GridHeader& grid, const ColorField& field,
                const ColorPyramidOptions& options, WorkerPool& workers, ColorMapWriter& writer)
-      : filter_(field, grid),
+      : grid_(grid),
+        filter_(field, grid),
         options_(options),
         workers_(workers),
         writer_(writer),
@@ -90,10 +91,12 @@ class PyramidBuild {
     const PlannedTile& planned = plan_[tile];
     auto texels = std::make_unique<Texels>(std::size_t{kSide} * kSide);
     bool has_child = false;
+    const Halves halves = halvesOverGrid(planned.place);
     for (int number = 1; number <= 4; ++number) {
       const std::int32_t child = planned.children[static_cast<std::size_t>(number - 1)];
       const int column = number == 2 || number == 3 ? kHalf : 0, row = number >= 3 ? kHalf : 0;
       if (child == kNoTile) {
+        if (!halves.columns[column > 0 ? 1 : 0] || !halves.rows[row > 0 ? 1 : 0]) continue;
         DELTAZ_TRY(sampleInto(planned.place, column, row, kHalf, kHalf, *texels));
         continue;
       }
@@ -109,12 +112,34 @@ class PyramidBuild {
         }
       }
     }
+    extend(halves, *texels);
     TileState& state = states_[tile];
     state.exists = has_child || std::any_of(texels->begin(), texels->end(),
                                             [](const Texel& texel) { return texel[3] != 0; });
     if (state.exists) state.texels = std::move(texels);
     state.computed = true;
     return Success{};
+  }
+
+  // Which halves of a node, west and east, south and north, hold a part of the grid.
+  struct Halves {
+    std::array<bool, 2> columns{}, rows{};
+  };
+  Halves halvesOverGrid(const ColorPlace& place) const {
+    const PlaneSpan span = nodesOverGrid(grid_, place.level - 1);
+    const std::int64_t x = std::int64_t{2} * place.x, y = std::int64_t{2} * place.y;
+    return {{span.holdsColumn(x), span.holdsColumn(x + 1)}, {span.holdsRow(y), span.holdsRow(y + 1)}};
+  }
+
+  // Quarters with nothing of the grid repeat the texels nearest to them.
+  static void extend(const Halves& halves, Texels& texels) {
+    const auto nearest = [](const std::array<bool, 2>& over, int index) {
+      return over[index < kHalf ? 0 : 1] ? index : index < kHalf ? kHalf : kHalf - 1;
+    };
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column)
+        texels[at(column, row)] = texels[at(nearest(halves.columns, column), nearest(halves.rows, row))];
+    }
   }
 
   TexelBlock part(const ColorPlace& place, int column, int row, int columns, int rows) const {
@@ -190,17 +215,23 @@ class PyramidBuild {
           static_cast<std::size_t>(row + 1) * kColorTileSide + static_cast<std::size_t>(column + 1);
       std::copy(texel.begin(), texel.end(), bytes.begin() + static_cast<std::ptrdiff_t>(4 * k));
     };
+    const PlaneSpan span = nodesOverGrid(grid_, place.level);
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         // What lies on this side, in the tile's own texels.
         const int column = dx < 0 ? -1 : dx * kSide, row = dy < 0 ? -1 : dy * kSide;
         const int columns = dx == 0 ? kSide : 1, rows = dy == 0 ? kSide : 1;
-        const std::int32_t other = find(neighbour(place, dx, dy));
+        // Beyond the grid the nearest texels are repeated.
+        const int over_x = span.holdsColumn(std::int64_t{place.x} + dx) ? dx : 0,
+                  over_y = span.holdsRow(std::int64_t{place.y} + dy) ? dy : 0;
+        const std::int32_t other = find(neighbour(place, over_x, over_y));
         if (other != kNoTile && states_[static_cast<std::size_t>(other)].exists) {
           const Texels& texels = *states_[static_cast<std::size_t>(other)].texels;
+          const auto within = [](int index) { return std::clamp(index, 0, kSide - 1); };
           for (int j = 0; j < rows; ++j) {
             for (int i = 0; i < columns; ++i)
-              put(column + i, row + j, texels[at(column + i - dx * kSide, row + j - dy * kSide)]);
+              put(column + i, row + j,
+                  texels[at(within(column + i - over_x * kSide), within(row + j - over_y * kSide))]);
           }
           continue;
         }
@@ -232,6 +263,7 @@ class PyramidBuild {
     });
   }
 
+  const GridHeader& grid_;
   ColorFilter filter_;
   const ColorPyramidOptions& options_;
   WorkerPool& workers_;

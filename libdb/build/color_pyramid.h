@@ -3,7 +3,8 @@
 //
 // Where a node has a child its texels are the means of the child's stored ones (meanTexel), elsewhere they
 // are the field's. A tile's border is its neighbours' texels where those nodes exist, else the field's. Nodes
-// without any cover do not exist.
+// without any cover do not exist. Beyond the grid texels repeat the nearest that hold a part of it, so that
+// no level mixes what is not there into the colours at its edge.
 #pragma once
 
 #include <functional>
