@@ -34,18 +34,6 @@ std::optional<Hash128> contentsOf(const FileSystem& files) {
   const auto take = [&](const std::vector<std::byte>& bytes) {
     all.insert(all.end(), bytes.begin(), bytes.end());
   };
-  for (const ColorMap& map : database.value().colorMaps()) {
-    take(encodeColorDirectory(map.directory()));
-    for (std::uint32_t number = 1; number <= map.directory().node_count; ++number) {
-      const auto node = map.record(number);
-      if (!node.ok()) return std::nullopt;
-      take(encodeColorPage(std::span(&node.value(), 1)));
-      const auto texels = map.tile(node.value());
-      if (!texels.ok()) return std::nullopt;
-      const auto bytes = std::as_bytes(std::span(texels.value()));
-      all.insert(all.end(), bytes.begin(), bytes.end());
-    }
-  }
   for (const Model& model : database.value().models()) {
     take(encodeModelTree(model.tree()));
     for (const ModelPart& part : model.tree().parts) {
@@ -61,6 +49,19 @@ std::optional<Hash128> contentsOf(const FileSystem& files) {
     const auto placements = set->all();
     if (!placements.ok()) return std::nullopt;
     take(encodePlacementPage(placements.value()));
+  }
+  // Last, since texels take the longest, and most damage is found before.
+  for (const ColorMap& map : database.value().colorMaps()) {
+    take(encodeColorDirectory(map.directory()));
+    for (std::uint32_t number = 1; number <= map.directory().node_count; ++number) {
+      const auto node = map.record(number);
+      if (!node.ok()) return std::nullopt;
+      take(encodeColorPage(std::span(&node.value(), 1)));
+      const auto texels = map.tile(node.value());
+      if (!texels.ok()) return std::nullopt;
+      const auto bytes = std::as_bytes(std::span(texels.value()));
+      all.insert(all.end(), bytes.begin(), bytes.end());
+    }
   }
   return hash128(all);
 }
