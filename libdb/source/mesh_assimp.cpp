@@ -12,6 +12,7 @@
 #include <set>
 
 #include "formats/file_system.h"
+#include "libdb/source/gltf_triangles.h"
 #include "libdb/source/mesh_readers.h"
 #include "libdb/source/mesh_texture.h"
 
@@ -248,7 +249,16 @@ std::vector<std::string> missingMaterials(const std::string& path) {
   return missing;
 }
 
-Result<RawScene> read(const std::string& path) {
+std::uint64_t trianglesOf(const aiScene& scene) {
+  std::uint64_t count = 0;
+  for (unsigned int m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned int f = 0; f < mesh.mNumFaces; ++f) count += mesh.mFaces[f].mNumIndices == 3 ? 1 : 0;
+  }
+  return count;
+}
+
+Result<RawScene> read(const std::string& path, const std::vector<std::byte>& bytes) {
   Assimp::Importer importer;
   constexpr unsigned int kSteps = aiProcess_Triangulate | aiProcess_TransformUVCoords;
   const aiScene* scene = importer.ReadFile(path, kSteps);
@@ -258,6 +268,12 @@ Result<RawScene> read(const std::string& path) {
   }
   const bool obj =
       path.size() > 4 && (path.ends_with(".obj") || path.ends_with(".OBJ") || path.ends_with(".Obj"));
+  if (const std::uint64_t announced = obj ? 0 : announcedTriangles(bytes); trianglesOf(*scene) < announced) {
+    return invalidError(
+        IssueCode::kNone, path,
+        fmt::format("only {} of its {} triangles can be read", trianglesOf(*scene), announced),
+        "indices name vertices that are not there", "Check or export it again");
+  }
   DELTAZ_TRY_ASSIGN(RawScene raw, SceneReader(*scene, path, !obj).read());
   if (obj) {
     for (const std::string& name : missingMaterials(path)) {
@@ -270,9 +286,9 @@ Result<RawScene> read(const std::string& path) {
 
 }  // namespace
 
-Result<RawScene> readWithAssimp(const std::string& path) {
+Result<RawScene> readWithAssimp(const std::string& path, const std::vector<std::byte>& bytes) {
   try {
-    return read(path);
+    return read(path, bytes);
   } catch (const std::exception& exception) {
     return invalidError(IssueCode::kNone, path, "the mesh cannot be read", exception.what());
   }

@@ -33,7 +33,7 @@ struct RawScene {
 
 // PLY, STL and OFF. `bytes` are the file's.
 Result<RawScene> readWithOpenMesh(const std::string& path, const std::vector<std::byte>& bytes);
-// OBJ and glTF/GLB.
-Result<RawScene> readWithAssimp(const std::string& path);
+// OBJ and glTF/GLB. `bytes` are the file's.
+Result<RawScene> readWithAssimp(const std::string& path, const std::vector<std::byte>& bytes);
 
 }  // namespace deltaz

@@ -252,7 +252,7 @@ Result<RawScene> readScene(const std::string& path, const std::vector<std::byte>
     return invalidError(IssueCode::kNone, path, "this is no mesh in a format dbbuild reads",
                         "it is none of OBJ, PLY, STL, OFF, glTF and GLB", "Convert it to one of them");
   }
-  if (format == MeshFormat::kObj || format == MeshFormat::kGltf) return readWithAssimp(path);
+  if (format == MeshFormat::kObj || format == MeshFormat::kGltf) return readWithAssimp(path, bytes);
   return readWithOpenMesh(path, bytes);
 }
 

@@ -149,6 +149,31 @@ TEST_F(MeshSource, transparency_is_left_out_with_a_warning) {
   EXPECT_NE(model.warnings.front().find("transparency"), std::string::npos);
 }
 
+// Three vertices, and whichever indices, of 16 bits in base64.
+std::string indexedGltf(const std::string& base64, std::size_t count) {
+  std::string text = gltf("", "{}");
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  replace(R"("material":0)", R"("material":0,"indices":1)");
+  replace(R"("max":[1,1,0]})",
+          R"("max":[1,1,0]},{"bufferView":1,"componentType":5123,"type":"SCALAR","count":)" +
+              std::to_string(count) + "}");
+  replace(R"("byteLength":36})",
+          R"("byteLength":36},{"buffer":1,"byteLength":)" + std::to_string(2 * count) + "}");
+  text.replace(text.rfind("]}"), 2,
+               R"(,{"byteLength":)" + std::to_string(2 * count) +
+                   R"(,"uri":"data:application/octet-stream;base64,)" + base64 + "\"}]}");
+  return text;
+}
+
+TEST_F(MeshSource, triangles_of_a_gltf_whose_indices_are_wrong_are_not_dropped_in_silence) {
+  EXPECT_EQ(read(write("good.gltf", indexedGltf("AAABAAIAAgABAAAA", 6))).parts.back().mesh.triangles.size(),
+            2u);
+  // The second triangle is 2, 1, 7.
+  expectRefused("index.gltf", indexedGltf("AAABAAIAAgABAAcA", 6));
+}
+
 TEST_F(MeshSource, broken_files_are_refused_by_name) {
   expectRefused("empty.ply", "");
   expectRefused("text.obj", "this is not a mesh\n");
