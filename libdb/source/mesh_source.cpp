@@ -97,7 +97,7 @@ class SceneConverter {
     const ModelTransform to_file = top ? own : concatenate(own, to_file_[node.parent]);
     to_file_.push_back(to_file);
     for (const double value : to_file) {
-      if (!(std::abs(value) <= kMaximumModelMetres)) return outOfRange("the transform of a node");
+      if (!(std::abs(value) <= kMaximumModelMetres)) return outOfRange("the transform of a node", value);
     }
     const ModelTransform frame = frameOf(to_file);
     // Both have one origin; said exactly, so that every use of a mesh gets the same positions.
@@ -132,10 +132,16 @@ class SceneConverter {
   }
 
  private:
-  Error outOfRange(const std::string& what) const {
+  Error outOfRange(const std::string& what, double value) const {
+    if (!std::isfinite(value)) {
+      return invalidError(IssueCode::kNone, path_, fmt::format("{} is no finite number", what),
+                          "the file is damaged", "Check or export it again");
+    }
     return invalidError(IssueCode::kNone, path_,
-                        fmt::format("{} is no number or lies beyond {} m", what, kMaximumModelMetres),
-                        "the file is damaged or its unit is another", "Check the file, or give --units");
+                        fmt::format("{} is {:.8g} m, beyond {:.0f} m", what, value, kMaximumModelMetres),
+                        "these look like map coordinates, or the unit is another",
+                        "Subtract an offset from all coordinates so that the model lies near the origin, or "
+                        "give --units");
   }
 
   Vector3 convert(const std::array<double, 3>& p) const {
@@ -163,7 +169,7 @@ class SceneConverter {
       const Vector3 p = transformPoint(to_frame, convert(position) * unit_);
       for (const double value : {p.x, p.y, p.z}) {
         if (!(std::abs(value) <= kMaximumModelMetres))
-          return outOfRange(fmt::format("a coordinate of {}", name));
+          return outOfRange(name.empty() ? "a coordinate" : fmt::format("a coordinate of {}", name), value);
       }
       mesh.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
     }
@@ -256,6 +262,36 @@ Result<RawScene> readScene(const std::string& path, const std::vector<std::byte>
   return readWithOpenMesh(path, bytes);
 }
 
+// Positions pass through floats, of the readers and of the file made: far from the origin their steps show.
+// Nothing if they do not.
+std::string warningOfRounding(const RawNode& node, double unit) {
+  std::array<double, 3> low{}, high{};
+  bool any = false;
+  for (const RawMesh& mesh : node.meshes) {
+    for (const std::array<double, 3>& p : mesh.positions) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(p[k])) return {};
+        low[k] = any ? std::min(low[k], p[k]) : p[k];
+        high[k] = any ? std::max(high[k], p[k]) : p[k];
+      }
+      any = true;
+    }
+  }
+  double size = 0, far = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    size = std::max(size, high[k] - low[k]);
+    far = std::max({far, std::abs(low[k]), std::abs(high[k])});
+  }
+  const double step = std::ldexp(1.0, std::ilogb(std::max(far, 1e-30)) - 23);
+  // A millimetre where the origin lies outside the mesh, and a step that is much of its size in any unit.
+  constexpr double kLargestStep = 1e-3, kLargestPart = 1e-4;
+  if (far <= 2 * size || !(step * unit > kLargestStep || step > kLargestPart * size)) return {};
+  return fmt::format(
+      "its vertices lie up to {:.8g} m from the origin and are rounded to {:.2g} m; these look like map "
+      "coordinates: subtract an offset from them first",
+      far * unit, step * unit);
+}
+
 }  // namespace
 
 Result<ImportedModel> readMeshSource(const std::string& path, const MeshSourceOptions& options) {
@@ -268,7 +304,13 @@ Result<ImportedModel> readMeshSource(const std::string& path, const MeshSourceOp
                     readWholeFile(localFileSystem(), path, kMostFileBytes));
   if (bytes.empty()) return invalidError(IssueCode::kNone, path, "the file is empty");
   const MeshFormat format = formatOf(path, bytes);
-  DELTAZ_TRY_ASSIGN(const RawScene scene, readScene(path, bytes, format));
+  DELTAZ_TRY_ASSIGN(RawScene scene, readScene(path, bytes, format));
+  for (const RawNode& node : scene.nodes) {
+    const std::string warning = warningOfRounding(node, options.unit_metres);
+    if (warning.empty()) continue;
+    scene.warnings.push_back(fmt::format("{}: {}", path, warning));
+    break;
+  }
   const bool y_up =
       options.up == UpAxis::kY || (options.up == UpAxis::kOfFormat && format == MeshFormat::kGltf);
   ImportedModel model;

@@ -174,6 +174,23 @@ TEST_F(MeshSource, triangles_of_a_gltf_whose_indices_are_wrong_are_not_dropped_i
   expectRefused("index.gltf", indexedGltf("AAABAAIAAgABAAcA", 6));
 }
 
+TEST_F(MeshSource, coordinates_of_a_map_are_a_warning_or_an_error_that_says_so) {
+  const ImportedModel model = read(write(
+      "map.obj", "v 500000.01 900000.01 0\nv 500000.04 900000.01 0\nv 500000.01 900000.51 0\nf 1 2 3\n"));
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("map coordinates"), std::string::npos) << model.warnings[0];
+  // A large mesh about its origin is not one.
+  EXPECT_TRUE(read(write("wide.obj", "v -90000 0 0\nv 90000 0 0\nv 0 90000 0\nf 1 2 3\n")).warnings.empty());
+  const Result<ImportedModel> far = readMeshSource(
+      write("far.obj", "v 500000 4100000 0\nv 500009 4100000 0\nv 500000 4100009 0\nf 1 2 3\n"), {});
+  ASSERT_FALSE(far.ok());
+  EXPECT_NE(far.error().message().find("Subtract an offset"), std::string::npos) << far.error().message();
+  const Result<ImportedModel> none =
+      readMeshSource(write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), {});
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().message().find("no finite number"), std::string::npos) << none.error().message();
+}
+
 TEST_F(MeshSource, broken_files_are_refused_by_name) {
   expectRefused("empty.ply", "");
   expectRefused("text.obj", "this is not a mesh\n");
