@@ -13,6 +13,8 @@
 #include "libdb/build/color_pyramid.h"
 #include "libdb/build/image_field.h"
 #include "libdb/build/terrain_field.h"
+#include "libdb/source/datum_report.h"
+#include "libdb/source/gdal_session.h"
 #include "libdb/source/source_opening.h"
 
 namespace deltaz {
@@ -171,10 +173,30 @@ class ColorBuild {
     return std::optional<int>(level);
   }
 
+  // Says how images come from their datum to the grid's, once each; refuses a guess nobody asked for.
+  Status checkDatumChanges(const GridHeader& grid) {
+    if (images_.empty()) return Success{};
+    const GdalSession session;
+    DELTAZ_TRY_ASSIGN(const ReferenceSystem system,
+                      parseReferenceSystem(grid.crs_wkt, "area.json", grid.coordinate_epoch));
+    for (const ColorImage& image : images_) {
+      if (sameDatum(image.system(), system)) continue;
+      const auto middle = image.coordinatesAt(0.5 * image.columns(), 0.5 * image.rows());
+      DELTAZ_TRY_ASSIGN(std::string warning,
+                        reportDatumChange(image.path(), image.system(), system, middle[0], middle[1],
+                                          options_.allow_ballpark));
+      std::vector<std::string>& warnings = summary_.warnings;
+      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+        warnings.push_back(std::move(warning));
+    }
+    return Success{};
+  }
+
   Status fill(const Database& database, ColorMapWriter& writer) {
     const int grids = database.gridCount();
     for (int grid = 0; grid < grids; ++grid) {
       const GridGeometry& geometry = database.grid(grid);
+      DELTAZ_TRY(checkDatumChanges(geometry.header()));
       DELTAZ_TRY_ASSIGN(const std::unique_ptr<ColorField> field, fieldOf(database, grid));
       ColorPyramidOptions pyramid;
       DELTAZ_TRY_ASSIGN(pyramid.last_level, lastLevel(geometry));

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "libdb/access/grid_geometry.h"
+#include "libdb/source/datum_report.h"
 #include "libdb/source/full_turn.h"
 #include "libdb/source/gdal_session.h"
 #include "libdb/source/grid_cutting.h"
@@ -174,42 +175,14 @@ class AreaReader {
   // Says how the datum is changed; refuses a guess nobody asked for.
   Status checkDatumChange(const SourceRaster& raster) {
     const GridHeader& header = raster.grid.header;
-    DELTAZ_TRY_ASSIGN(const ReferenceSystem own, geographicOf(raster.system, raster.path));
-    std::vector<double> x = {
-        postCoordinate(header.x_axis, kProjectedOrigin, header.x_axis.first + header.x_axis.count / 2)};
-    std::vector<double> y = {
-        postCoordinate(header.y_axis, kProjectedOrigin, header.y_axis.first + header.y_axis.count / 2)};
-    DELTAZ_TRY_ASSIGN(const CoordinateChange to_own,
-                      CoordinateChange::between(raster.system, own, true, raster.path));
-    (void)to_own.apply(x, y);
-    const DatumChangeFacts facts = datumChangeFacts(own, area_, x[0], y[0]);
-    const std::string better =
-        facts.missing_grids.empty() ? "" : fmt::format("a better one needs the grid {}", facts.missing_grids);
-    if (!facts.operation.empty()) {
-      result_.warnings.push_back(
-          fmt::format("{}: placed from datum {} to {} by '{}'{}{}", raster.path,
-                      raster.system.horizontal_datum, area_.horizontal_datum, facts.operation,
-                      facts.accuracy ? fmt::format(", accurate to {} m", *facts.accuracy) : "",
-                      better.empty() ? "" : "; " + better));
-      return Success{};
-    }
-    if (options_.allow_ballpark) {
-      result_.warnings.push_back(
-          fmt::format("{}: the change from datum {} to {} is a guess, and may be off by hundreds of metres "
-                      "(--allow-ballpark){}",
-                      raster.path, raster.system.horizontal_datum, area_.horizontal_datum,
-                      better.empty() ? "" : "; " + better));
-      return Success{};
-    }
-    return refusedSource(
-        raster.path,
-        fmt::format("the change from datum {} to {} can only be guessed", raster.system.horizontal_datum,
-                    area_.horizontal_datum),
-        better.empty() ? "PROJ knows no operation between them here" : better,
-        better.empty()
-            ? "Give --allow-ballpark to accept it"
-            : "Put it where PROJ looks (projsync, or the package proj-data), or accept the guess with "
-              "--allow-ballpark");
+    const double x =
+        postCoordinate(header.x_axis, kProjectedOrigin, header.x_axis.first + header.x_axis.count / 2);
+    const double y =
+        postCoordinate(header.y_axis, kProjectedOrigin, header.y_axis.first + header.y_axis.count / 2);
+    DELTAZ_TRY_ASSIGN(std::string warning,
+                      reportDatumChange(raster.path, raster.system, area_, x, y, options_.allow_ballpark));
+    result_.warnings.push_back(std::move(warning));
+    return Success{};
   }
 
   static double spacingInMetres(const SourceRaster& raster) {

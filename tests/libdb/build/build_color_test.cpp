@@ -340,6 +340,23 @@ TEST(BuildColor, mercators_image_is_no_finer_beyond_its_end_at_the_pole) {
             0);
 }
 
+TEST(BuildColor, a_datum_nobody_knows_is_refused_until_a_guess_is_allowed) {
+  const TemporaryDirectory folder;
+  TestImage image = overGrid(1, patterned);
+  image.crs = "+proj=longlat +ellps=bessel +type=crs";
+  ColorBuildOptions options = ofImages({makeImage(folder, image, "image.tif")});
+  MemoryFileSystem files = buildInMemory(syntheticGrid());
+  const auto refused = buildColor(files, kMemoryDatabasePath, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message().find("--allow-ballpark"), std::string::npos);
+  EXPECT_LT(refused.error().message().size(), 400u) << refused.error().message();
+  options.allow_ballpark = true;
+  std::vector<std::string> warnings;
+  (void)withMap(options, syntheticGrid(), &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("guess"), std::string::npos) << warnings[0];
+}
+
 TEST(BuildColor, a_size_in_metres_is_met_whatever_the_projections_scale) {
   RawGrid grid = projectedGrid();  // cells of 30 m, of 30.012 m on the ground
   ColorBuildOptions options;
