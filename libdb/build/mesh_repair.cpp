@@ -244,16 +244,17 @@ RepairReport& RepairReport::operator+=(const RepairReport& other) {
 
 std::vector<std::string> RepairReport::lines() const {
   std::vector<std::string> lines;
-  const auto say = [&](std::size_t count, const char* what) {
-    if (count > 0) lines.push_back(fmt::format("{} {}", count, what));
+  const auto say = [&](std::size_t count, const char* one, const char* several, const char* what) {
+    if (count > 0) lines.push_back(fmt::format("{} {} {}", count, count == 1 ? one : several, what));
   };
-  say(welded_vertices, "vertices joined with others at the same place");
-  say(isolated_vertices, "vertices of no triangle dropped");
-  say(degenerate_triangles, "triangles without an area dropped");
-  say(duplicate_triangles, "triangles given twice dropped");
-  say(turned_triangles, "triangles of closed shells turned to face outwards");
-  say(non_manifold_edges, "edges of more than two triangles kept");
-  say(inside_out_shells, "closed shells that face inwards kept");
+  say(welded_vertices, "vertex", "vertices", "joined with others at the same place");
+  say(isolated_vertices, "vertex", "vertices", "of no triangle dropped");
+  say(degenerate_triangles, "triangle", "triangles", "without an area dropped");
+  say(duplicate_triangles, "triangle", "triangles", "given twice dropped");
+  say(turned_triangles, "triangle", "triangles", "of closed shells turned to face outwards");
+  say(non_manifold_edges, "edge", "edges", "of more than two triangles kept");
+  say(inside_out_shells, "closed shell that faces", "closed shells that face",
+      "inwards kept: drawn inside out; turn the triangles over in the program that made it to mend that");
   return lines;
 }
 

@@ -42,8 +42,11 @@ class SceneReader {
       : scene_(scene), path_(path), gltf_(gltf) {}
 
   Result<RawScene> read() {
+    // What no mesh is made of is not looked at: what it lacks is no loss.
+    std::set<unsigned int> used;
+    for (unsigned int m = 0; m < scene_.mNumMeshes; ++m) used.insert(scene_.mMeshes[m]->mMaterialIndex);
     for (unsigned int m = 0; m < scene_.mNumMaterials; ++m)
-      materials_.push_back(readMaterial(*scene_.mMaterials[m]));
+      materials_.push_back(used.contains(m) ? readMaterial(*scene_.mMaterials[m]) : Material{});
     if (scene_.mNumAnimations > 0) warn("animations are left out; parts stand as they do by default");
     // A node's children come right after all nodes of its depth: parents before children.
     std::vector<std::pair<const aiNode*, std::uint32_t>> waiting = {{scene_.mRootNode, kNoParent}};

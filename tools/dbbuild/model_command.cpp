@@ -67,6 +67,11 @@ void printJson(const std::string& area, const std::string& name, const ModelSumm
   std::cout << jsonText(json);
 }
 
+// Millimetres; of what is so small that they would hide it, three digits.
+std::string lengthText(double metres) {
+  return metres > 0 && metres < 0.1 ? fmt::format("{:.3g}", metres) : fmt::format("{:.3f}", metres);
+}
+
 void printText(const std::string& area, const std::string& name, const ModelSummary& summary, bool verbose) {
   std::size_t triangles = 0, meshes = 0;
   for (const ModelSummary::Part& part : summary.parts) {
@@ -74,10 +79,10 @@ void printText(const std::string& area, const std::string& name, const ModelSumm
     triangles += part.lods.front().triangles;
     ++meshes;
   }
-  std::cout << fmt::format("{}: model {}: {} triangles in {} of {} part{}; {:.3f} x {:.3f} x {:.3f} m\n",
-                           area, name, triangles, meshes, summary.parts.size(),
-                           summary.parts.size() == 1 ? "" : "s", summary.size[0], summary.size[1],
-                           summary.size[2]);
+  std::cout << fmt::format("{}: model {}: {} triangle{} in {} of {} part{}; {} x {} x {} m\n", area, name,
+                           triangles, triangles == 1 ? "" : "s", meshes, summary.parts.size(),
+                           summary.parts.size() == 1 ? "" : "s", lengthText(summary.size[0]),
+                           lengthText(summary.size[1]), lengthText(summary.size[2]));
   for (const std::string& line : summary.repairs.lines()) std::cout << "  " + line + "\n";
   for (const ModelSummary::Part& part : summary.parts) {
     if (!verbose) break;

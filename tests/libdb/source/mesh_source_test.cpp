@@ -96,6 +96,15 @@ TEST_F(MeshSource, materials_that_are_not_there_are_a_warning) {
   EXPECT_NE(model.warnings.front().find("cube.mtl"), std::string::npos);
 }
 
+TEST_F(MeshSource, only_materials_that_are_used_can_lack_a_texture) {
+  write("cube.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 0.5\nnewmtl other\nKd 1 1 1\nmap_Kd no.png\n");
+  const ImportedModel unused = read(write("cube.obj", kCube));
+  EXPECT_TRUE(unused.warnings.empty()) << unused.warnings.front();
+  const ImportedModel used = read(write("used.obj", kCube + "usemtl other\nf 2 3 4\n"));
+  ASSERT_EQ(used.warnings.size(), 1u);
+  EXPECT_NE(used.warnings[0].find("no.png"), std::string::npos) << used.warnings[0];
+}
+
 // A node with a scale, a mirroring and a translation over a triangle.
 std::string gltf(const std::string& node, const std::string& material) {
   // Three positions: (0,0,0), (1,0,0), (0,1,0), base64 of 36 bytes of floats.
@@ -228,6 +237,18 @@ TEST(MeshRepair, a_sound_mesh_is_left_alone) {
   const RepairReport report = repairMesh(mesh);
   EXPECT_TRUE(report.lines().empty());
   EXPECT_EQ(mesh.triangles, tetrahedron().triangles);
+}
+
+TEST(MeshRepair, lines_are_in_the_number_of_what_they_count_and_say_how_shells_are_mended) {
+  RepairReport report;
+  report.welded_vertices = 1;
+  report.inside_out_shells = 1;
+  ASSERT_EQ(report.lines().size(), 2u);
+  EXPECT_EQ(report.lines()[0], "1 vertex joined with others at the same place");
+  EXPECT_NE(report.lines()[1].find("1 closed shell that faces inwards kept: drawn inside out; turn"),
+            std::string::npos);
+  report.welded_vertices = 2;
+  EXPECT_EQ(report.lines()[0], "2 vertices joined with others at the same place");
 }
 
 TEST(MeshRepair, what_is_wrong_is_counted_and_put_right) {
