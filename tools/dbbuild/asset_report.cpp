@@ -47,7 +47,8 @@ std::string sourcesText(const AssetHeader& asset) {
 std::string partText(const ModelPart& part) {
   std::string text = fmt::format("    part          {}", part.name);
   for (std::size_t k = 0; k < part.lods.size(); ++k) {
-    text += fmt::format("{} {} triangles", k == 0 ? ":" : ",", part.lods[k].triangle_count);
+    const std::uint64_t count = part.lods[k].triangle_count;
+    text += fmt::format("{} {} triangle{}", k == 0 ? ":" : ",", count, count == 1 ? "" : "s");
     if (k > 0) text += fmt::format(" within {:.3g} m", part.lods[k].error);
   }
   return text + "\n";
