@@ -150,25 +150,56 @@ class ColorBuild {
     return std::unique_ptr<ColorField>(std::move(field));
   }
 
-  // The level --texel asks for; none: as fine as the field is. kUsage if that would be more than a file
-  // holds.
-  Result<std::optional<int>> lastLevel(const GridGeometry& geometry) const {
+  // The level --texel asks for; none: as fine as the field is. kUsage if its texels would be absurdly finer
+  // than what is to be shown, or too many to be numbered.
+  Result<std::optional<int>> lastLevel(std::uint16_t number, const GridGeometry& geometry,
+                                       const ColorField& field) {
     if (!options_.texel) return std::optional<int>();
     // A size that is meant to be the cell's is not to fail by a rounding, nor by a projection's scale.
     constexpr double kAbout = 1.005;
     const double cells = wantedCells(geometry, *options_.texel) * kAbout;
-    const int leaf = geometry.header().leaf_cells;
-    int level = colorRootLevel(geometry.header()) + kColorFarLevels;
-    while (level > kLowestColorLevel && colorTexelCells(leaf, level) > cells) --level;
-    constexpr double kMostTiles = 1 << 22;
-    const double node = colorNodeCells(leaf, level);
-    const double tiles = static_cast<double>(geometry.header().x_axis.count) / node *
-                         static_cast<double>(geometry.header().y_axis.count) / node;
-    if (tiles > kMostTiles || colorTexelCells(leaf, level) > cells) {
+    const GridHeader& grid = geometry.header();
+    const int coarsest = colorRootLevel(grid) + kColorFarLevels;
+    int level = coarsest;
+    while (level > kLowestColorLevel && colorTexelCells(grid.leaf_cells, level) > cells) --level;
+    // What the field touches, by nodes so coarse that there are few of them.
+    constexpr int kProbeLevels = 5;
+    const int probe = std::max(level, colorRootLevel(grid) - kProbeLevels);
+    double texels = 0;
+    bool much_finer = !images_.empty(), absurdly_finer = true;
+    for (const PlannedTile& tile : planColorTiles(number, grid, field, probe)) {
+      if (tile.place.level != probe) continue;
+      const TexelBlock block = clampedBlock(blockOf(tile.place, probe), texelsOverGrid(grid, probe));
+      texels += std::ldexp(static_cast<double>(block.columns) * block.rows, 2 * (probe - level));
+      constexpr int kMuchFinerLevels = 2, kAbsurdlyFinerLevels = 4;  // a quarter, a sixteenth of a pixel
+      much_finer = much_finer && !field.isFiner(block, level + kMuchFinerLevels);
+      absurdly_finer = absurdly_finer && !field.isFiner(block, level + kAbsurdlyFinerLevels);
+    }
+    constexpr double kManyTexels = 0x1p28;  // minutes of work
+    if (texels > kManyTexels && absurdly_finer) {
       return usageError(
-          "--texel", "the area would have too many texels of this size",
-          fmt::format("it has {} x {} posts", geometry.header().x_axis.count, geometry.header().y_axis.count),
-          "Give a larger one");
+          "--texel", "the texels would be smaller than a sixteenth of what there is to show",
+          fmt::format("there would be {:.3g} of them, and the images' pixels or the terrain's cells are that "
+                      "much larger",
+                      texels),
+          "Give a larger one, or leave it out");
+    }
+    constexpr double kMostTexels = 0x1p36;
+    if (texels > kMostTexels || colorTexelCells(grid.leaf_cells, level) > cells) {
+      const double larger = std::exp2(std::max(1.0, std::ceil(0.5 * std::log2(texels / kMostTexels))));
+      return usageError(
+          "--texel", "the map would have too many texels of this size",
+          fmt::format("there would be {:.3g} of them, and about {:.3g} GB to write; {:.3g} are taken at most",
+                      texels, 4 * texels / 1e9, kMostTexels),
+          fmt::format(
+              "Give {:.3g}{} or more",
+              options_.texel->value * colorTexelCells(grid.leaf_cells, level) / cells * kAbout * larger,
+              options_.texel->arc_seconds ? "as" : "m"));
+    }
+    if (much_finer && texels > 0) {
+      summary_.warnings.push_back(
+          "--texel: the texels are no larger than a quarter of the images' pixels; they show no more for it, "
+          "and take more room");
     }
     return std::optional<int>(level);
   }
@@ -199,7 +230,7 @@ class ColorBuild {
       DELTAZ_TRY(checkDatumChanges(geometry.header()));
       DELTAZ_TRY_ASSIGN(const std::unique_ptr<ColorField> field, fieldOf(database, grid));
       ColorPyramidOptions pyramid;
-      DELTAZ_TRY_ASSIGN(pyramid.last_level, lastLevel(geometry));
+      DELTAZ_TRY_ASSIGN(pyramid.last_level, lastLevel(static_cast<std::uint16_t>(grid), geometry, *field));
       pyramid.progress = [&](double fraction) { report("colours", (grid + fraction) / grids); };
       DELTAZ_TRY(buildColorPyramid(static_cast<std::uint16_t>(grid), geometry.header(), *field, pyramid,
                                    workers_, writer));

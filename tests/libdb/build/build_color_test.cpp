@@ -357,6 +357,25 @@ TEST(BuildColor, a_datum_nobody_knows_is_refused_until_a_guess_is_allowed) {
   EXPECT_NE(warnings[0].find("guess"), std::string::npos) << warnings[0];
 }
 
+TEST(BuildColor, absurdly_small_texels_are_refused_and_needlessly_small_ones_told) {
+  const TemporaryDirectory folder;
+  ColorBuildOptions options = ofImages({makeImage(folder, overGrid(1, patterned), "image.tif")});
+  for (const double arc_seconds : {0.001, 1e-9}) {
+    options.texel = PostSpacing{arc_seconds, true};
+    MemoryFileSystem files = buildInMemory(syntheticGrid());
+    const auto refused = buildColor(files, kMemoryDatabasePath, options);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(refused.error().message().find("a sixteenth"), std::string::npos) << refused.error().message();
+  }
+  for (const auto& [arc_seconds, told] : {std::pair(15.0, 0u), std::pair(7.5, 1u), std::pair(60.0, 0u)}) {
+    options.texel = PostSpacing{arc_seconds, true};
+    std::vector<std::string> warnings;
+    (void)withMap(options, syntheticGrid(), &warnings);
+    EXPECT_EQ(warnings.size(), told) << arc_seconds;
+  }
+}
+
 TEST(BuildColor, a_size_in_metres_is_met_whatever_the_projections_scale) {
   RawGrid grid = projectedGrid();  // cells of 30 m, of 30.012 m on the ground
   ColorBuildOptions options;
