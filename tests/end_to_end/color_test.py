@@ -190,7 +190,9 @@ def real_pairs_make_sound_maps(folder):
         area = folder / (dem + ".dz")
         run("dbbuild", "terrain", data / dem, "-o", area, *of_terrain)
         ended = add(area, "map", *of_color)
-        require(ended["warnings"] == [] and ended["nodes"] > 20, ended)
+        # Zion's classes stand in another datum than its elevations: how they were placed is said, and nothing else.
+        require(all(" from datum " in warning for warning in ended["warnings"]) and ended["nodes"] > 20, ended)
+        require(bool(ended["warnings"]) == (dem == "zion_srtm.tif"), ended)
 
 
 if __name__ == "__main__":

@@ -40,11 +40,11 @@ std::uint8_t& valueAt(std::vector<std::uint8_t>& texels, int i, int j, std::size
   return texels.at(4 * static_cast<std::size_t>((j + 1) * kColorTileSide + i + 1) + value);
 }
 
-// Changes the red of texel (i, j) of a node by one.
-void nudge(ColorParts& parts, const ColorNode& node, int i, int j) {
+// Changes the red of texel (i, j) of a node.
+void nudge(ColorParts& parts, const ColorNode& node, int i, int j, int by = 1) {
   std::vector<std::uint8_t> texels = parts.texels(node);
   std::uint8_t& red = valueAt(texels, i, j);
-  red = static_cast<std::uint8_t>(red == 255 ? 254 : red + 1);
+  red = static_cast<std::uint8_t>(red + by > 255 ? red - by : red + by);
   valueAt(texels, i, j, 3) = 255;
   parts.setTexels(node, texels);
 }
@@ -92,9 +92,10 @@ std::vector<Asset> colorAssets() {
        withColors([](ColorParts& parts) { nudge(parts, besideOthers(parts, true), kColorTileTexels, 77); }),
        // Nobody has a texel there.
        withColors([](ColorParts& parts) { nudge(parts, besideOthers(parts, false), kColorTileTexels, 77); })},
-      // Away from the borders, so that no neighbour carries the texel.
+      // Away from the borders, so that no neighbour carries the texel; by so much that the mean of four is
+      // another.
       {IssueCode::kColorFilter,
-       withColors([](ColorParts& parts) { nudge(parts, parts.nodes.back(), 64, 65); }),
+       withColors([](ColorParts& parts) { nudge(parts, parts.nodes.back(), 64, 65, 16); }),
        // A quadrant without a child is not the mean of anything; the coarsest node is below none.
        withColors([](ColorParts& parts) {
          const ColorNode& root = parts.nodes.front();
