@@ -7,7 +7,7 @@
 set -eu
 
 build_packages="g++ cmake ninja-build pkg-config libgdal-dev libproj-dev libcgal-dev libgeographiclib-dev libopenimageio-dev libcli11-dev
-  libtbb-dev libxxhash-dev libzstd-dev nlohmann-json3-dev libtomlplusplus-dev libopenmesh-dev libassimp-dev libfmt-dev scdoc"
+  libtbb-dev libhwy-dev libxxhash-dev libzstd-dev nlohmann-json3-dev libtomlplusplus-dev libopenmesh-dev libassimp-dev libfmt-dev scdoc"
 test_packages="libgtest-dev librapidcheck-dev libbenchmark-dev gdal-bin python3 python3-gdal python3-jsonschema"
 style_packages="clang-format clang-tidy"
 
