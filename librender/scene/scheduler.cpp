@@ -135,7 +135,22 @@ class Scheduler {
                                            coarser == CutIndex::kNone ? 0 : stripError(n, added)});
     }
     schedule.nodes = std::move(nodes_);
+    schedule.front_to_back = frontToBack(schedule.nodes);
     return schedule;
+  }
+
+  std::vector<std::uint32_t> frontToBack(const std::vector<CutNode>& nodes) const {
+    std::vector<std::pair<double, std::uint32_t>> by_distance;
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+      if (!nodes[n].in_view) continue;
+      const Node& node = nodes[n].node;
+      by_distance.emplace_back(std::max(0.0, length(node.centroid - view_.eye) - node.radius()), n);
+    }
+    std::sort(by_distance.begin(), by_distance.end());
+    std::vector<std::uint32_t> order;
+    order.reserve(by_distance.size());
+    for (const auto& [distance, n] : by_distance) order.push_back(n);
+    return order;
   }
 
   const Database& database_;

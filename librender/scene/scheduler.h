@@ -10,6 +10,7 @@
 // Reads only the node pages of nodes in the cut and of their siblings. Thread-safety: pure functions.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "formats/error.h"
@@ -26,6 +27,9 @@ struct Schedule {
   // The cut, in the order of the record numbers. It covers all of the area that has heights, but for what
   // lies under other grids.
   std::vector<CutNode> nodes;
+  // Indices into `nodes` of those in view, nearest first: by the least distance between the eye and the
+  // node's sphere, those equally near by record number. Nothing a node draws is nearer than that distance.
+  std::vector<std::uint32_t> front_to_back;
 };
 
 struct ScheduleOptions {

@@ -92,6 +92,29 @@ TEST(Scheduler, zero_tolerance_is_full_resolution_and_order_is_that_of_records) 
   EXPECT_EQ(nodes.size(), nodesOfLevel(area.database, 0, 0).value().size());
 }
 
+TEST(Scheduler, lists_all_that_is_in_view_nearest_first) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  for (const double above : {2.0, 3000.0}) {
+    const ViewTransform view =
+        makeViewTransform(cameraOver(area.database, 0.5, 0.5, above, 40, -8, 320, 200), EllipsoidShape{});
+    FrameStatistics::Nodes counts;
+    const Schedule schedule =
+        scheduleNodes(area.database, SeamIndex(area.database), view, {1.0}, counts).value();
+    std::set<std::uint32_t> listed;
+    double last = 0;
+    for (const std::uint32_t n : schedule.front_to_back) {
+      const Node& node = schedule.nodes[n].node;
+      const double distance = std::max(0.0, length(node.centroid - view.eye) - node.radius());
+      EXPECT_GE(distance, last);
+      last = distance;
+      listed.insert(node.number);
+    }
+    EXPECT_GT(last, 0);
+    EXPECT_EQ(listed.size(), schedule.front_to_back.size());
+    EXPECT_EQ(listed, drawnNodes(schedule));
+  }
+}
+
 TEST(Scheduler, an_eye_inside_a_node_sees_it_at_full_resolution) {
   const MemoryDatabase area = makeDatabase(smallArea());
   for (const double above : {-200.0, -1.0, 0.01, 2.0}) {
