@@ -7,6 +7,7 @@
 
 #include "libdb/access/synthetic_color.h"
 #include "libdb/access/vertex_normals.h"
+#include "librender/objects/view_positions.h"
 
 namespace deltaz {
 namespace {
@@ -18,55 +19,15 @@ PostRange rowRange(const TerrainTile& tile) {
   return {tile.first_row, tile.first_row + tile.rows};
 }
 
-// One view axis as it enters the separable transform.
-struct Axis {
-  Vector3 m;     // Earth-centred vector, scaled to pixels for V and W
-  double t = 0;  // dot(m, eye)
-  Axis(const Vector3& vector, const Vector3& eye) : m(vector), t(dot(vector, eye)) {}
-};
-
-// Posts of a projected grid do not separate into rows and columns.
-std::vector<Vector3> projectedPositions(const TerrainTile& tile, const GridGeometry& geometry,
-                                        const ViewTransform& view) {
-  std::vector<Vector3> position;
-  const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
-  position.reserve(places.size());
-  for (int j = 0; j < tile.rows; ++j) {
-    for (int i = 0; i < tile.columns; ++i)
-      position.push_back(view.toView(places[position.size()].at(geometry.metres(tile.height(i, j)))));
-  }
-  return position;
-}
-
 }  // namespace
 
 std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
                                       const ViewTransform& view) {
-  if (!geometry.isGeodetic()) return projectedPositions(tile, geometry, view);
-  const std::vector<RowConstants> rows = geometry.rowConstantsOf(tile.level, rowRange(tile));
-  const std::vector<ColumnConstants> columns = geometry.columnConstantsOf(tile.level, columnRange(tile));
-  const Axis u(view.forward, view.eye), v(view.right * view.pixels, view.eye),
-      w(view.down * view.pixels, view.eye);
-  std::vector<Vector3> column_terms;
-  column_terms.reserve(columns.size());
-  for (const ColumnConstants& column : columns) {
-    column_terms.push_back({u.m.x * column.cosine + u.m.y * column.sine,
-                            v.m.x * column.cosine + v.m.y * column.sine,
-                            w.m.x * column.cosine + w.m.y * column.sine});
-  }
-
+  ViewPositions lists;
+  terrainViewPositions(tile, geometry, view, lists);
   std::vector<Vector3> position;
-  position.reserve(rows.size() * columns.size());
-  for (int j = 0; j < tile.rows; ++j) {
-    const RowConstants& row = rows[static_cast<std::size_t>(j)];
-    for (int i = 0; i < tile.columns; ++i) {
-      const double height = geometry.metres(tile.height(i, j));
-      const double distance = row.a + row.b * height, z = row.c + row.s * height;
-      const Vector3& k = column_terms[static_cast<std::size_t>(i)];
-      position.push_back({distance * k.x + (z * u.m.z - u.t), distance * k.y + (z * v.m.z - v.t),
-                          distance * k.z + (z * w.m.z - w.t)});
-    }
-  }
+  position.reserve(lists.count());
+  for (std::size_t post = 0; post < lists.count(); ++post) position.push_back(lists.at(post));
   return position;
 }
 
