@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "librender/objects/border_stitcher.h"
 #include "librender/objects/model_object_processor.h"
 #include "librender/objects/part_meshes.h"
+#include "librender/objects/report_objects.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/depth_frame_buffer.h"
 #include "librender/raster/pretiler.h"
@@ -48,16 +50,20 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   const std::uint64_t bytes_before = database.bytesRead();
   DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
   const SeamIndex seams(database);
+  // Objects by range are made of full-resolution nodes.
+  const bool by_range = options.lod == LodScheme::kReport;
+  const ScheduleOptions levels = by_range ? ScheduleOptions{.tolerance = 0, .fixed_level = -1}
+                                          : ScheduleOptions{options.tolerance, options.fixed_level};
   DELTAZ_TRY_ASSIGN(const Schedule schedule,
-                    scheduleNodes(database, seams, environment.view, {options.tolerance, options.fixed_level},
-                                  statistics.nodes));
+                    scheduleNodes(database, seams, environment.view, levels, statistics.nodes));
   statistics.level = schedule.level;
   statistics.coarsest_level = schedule.coarsest_level;
   DELTAZ_TRY_ASSIGN(const PoseTable poses, PoseTable::of(database, options.poses));
   DELTAZ_TRY_ASSIGN(const ModelSchedule models,
                     processModelTrees(modelSceneOf(database), poses, environment.view,
                                       {options.tolerance, options.fixed_level}, statistics.models));
-  statistics.projected_error = std::max(schedule.projected_error, models.projected_error);
+  statistics.projected_error = by_range ? std::numeric_limits<double>::infinity()
+                                        : std::max(schedule.projected_error, models.projected_error);
   statistics.milliseconds.schedule = watch.lap();
 
   const std::vector<CutNode>& cut = schedule.nodes;
@@ -85,11 +91,15 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   // Nodes of the terrain, then parts of models.
   std::vector<PretiledNode> pretiled(cut.size() + models.parts.size());
   std::vector<FrameStatistics::Triangles> of_node(pretiled.size());
+  std::vector<FrameStatistics::Objects> objects(by_range ? cut.size() : 0);
   tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
     if (!cut[n].in_view) return;
     TerrainSplits splits;
     TerrainVertices stitched = stitcher.vertices(static_cast<std::uint32_t>(n), splits);
-    TerrainFaces faces = terrainFaces(*tiles[n], stitched.position, splits, seams.replacedFaces(*tiles[n]));
+    const std::vector<std::uint8_t> replaced = seams.replacedFaces(*tiles[n]);
+    TerrainFaces faces = by_range ? reportFaces(*tiles[n], database.grid(tiles[n]->grid), environment.view,
+                                                options.report_lod, stitched.position, replaced, objects[n])
+                                  : terrainFaces(*tiles[n], stitched.position, splits, replaced);
     for (const TerrainFace& face : stitcher.seamFaces(static_cast<std::uint32_t>(n), stitched))
       addFace(faces, stitched.position, face);
     pretiled[n].grid = cut[n].node.record.grid;
@@ -109,6 +119,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
     statistics.triangles.clipped += counts.clipped;
     statistics.triangles.no_sample += counts.no_sample;
   }
+  for (const FrameStatistics::Objects& counts : objects) statistics.objects += counts;
   statistics.milliseconds.objects = watch.lap();
 
   DepthFrameBuffer buffer(options.camera.width, options.camera.height);

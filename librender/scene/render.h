@@ -6,6 +6,7 @@
 // for views that make no sense. Thread-safety: several renders of one database may run at once.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -16,6 +17,7 @@
 #include "libdb/access/database.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/pose.h"
+#include "librender/scene/report_schedule.h"
 
 namespace deltaz {
 
@@ -24,12 +26,18 @@ struct Sun {
   double elevation = 40;  // degrees above the horizon
 };
 
+// How coarse the terrain may be: by its errors, or by range (report_schedule.h), which bounds nothing and
+// leaves cracks, to compare with. The reference knows neither.
+enum class LodScheme : std::uint8_t { kError, kReport };
+
 inline constexpr std::string_view kNoColorMap = "none";
 
 struct RenderOptions {
   Camera camera;
   Sun sun;
-  double tolerance = 1.0;  // pixels; 0 draws full resolution
+  double tolerance = 1.0;  // pixels; 0 draws full resolution; of models alone with LodScheme::kReport
+  LodScheme lod = LodScheme::kError;
+  ReportLod report_lod;
   // >= 0: draw this level, of terrain and of models, whatever the tolerance (tests and benches).
   int fixed_level = -1;
   int threads = 0;  // 0: as many as the machine has
@@ -65,6 +73,15 @@ struct FrameStatistics {
   struct Triangles {
     std::uint64_t in = 0, back_facing = 0, clipped = 0, no_sample = 0, drawn = 0;  // in = sum of the others
   } triangles;
+  // With LodScheme::kReport: the terrain objects of the nodes drawn, and their faces before back ones are
+  // removed, each object's under its (finer) level; those of the coarser level of objects drawn twice.
+  struct Objects {
+    std::uint64_t out_of_view = 0, drawn = 0, drawn_twice = 0;
+    std::array<std::uint64_t, kReportLevels> faces{};
+    std::uint64_t faces_twice = 0;
+
+    Objects& operator+=(const Objects& other);
+  } objects;
   struct Samples {
     std::uint64_t tested = 0, written = 0, shaded = 0;
   } samples;
@@ -72,7 +89,7 @@ struct FrameStatistics {
   std::uint64_t posts_decoded = 0;
   std::uint64_t color_tiles = 0;      // of the colour map, read
   int level = 0, coarsest_level = 0;  // of detail, drawn: the finest and the coarsest
-  double projected_error = 0;         // pixels, bound of what is drawn
+  double projected_error = 0;         // pixels, bound of what is drawn; infinity: none
   double depth_complexity = 0;        // samples tested per covered pixel
   struct Milliseconds {
     double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;

@@ -70,6 +70,12 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
   app.add_option("--tolerance", options.tolerance,
                  "Largest error on the screen, pixels; 0 draws full resolution (default: 1)")
       ->type_name("PX");
+  app.add_option(
+         "--lod", options.lod,
+         "How coarse the terrain may be: error, within --tolerance, or report, by range as in 1983: no "
+         "error is bounded, and there are cracks (default: error)")
+      ->check(CLI::IsMember({"error", "report"}))
+      ->type_name("SCHEME");
   app.add_option("--engine", options.engine,
                  "fast, or reference: double precision, every triangle (default: fast)")
       ->check(CLI::IsMember({"fast", "reference"}))
@@ -118,9 +124,14 @@ Result<View> parseView(const ViewOptions& options) {
   render.color_map = options.color;
   DELTAZ_TRY_ASSIGN(render.tolerance,
                     parseNumberBetween(options.tolerance, "--tolerance", 0, kLargestTolerance));
+  render.lod = options.lod == "report" ? LodScheme::kReport : LodScheme::kError;
   DELTAZ_TRY_ASSIGN(const std::int64_t repeat, parseInteger(options.repeat, "--repeat", 1, kLargestRepeat));
   view.repeat = static_cast<int>(repeat);
   view.engine = options.engine == "reference" ? EngineKind::kReference : EngineKind::kFast;
+  if (view.engine == EngineKind::kReference && render.lod == LodScheme::kReport) {
+    return usageError("--lod", "the reference engine draws every triangle, there are no levels to choose", {},
+                      "Leave out --lod report, or --engine reference");
+  }
   DELTAZ_TRY(checkOutputs(options));
   if (!options.pose_path.empty()) {
     DELTAZ_TRY_ASSIGN(render.poses, readPoseFile(options.pose_path));
@@ -157,6 +168,10 @@ Status checkColorMap(const Database& database, const ViewOptions& options) {
 
 const char* engineName(EngineKind kind) {
   return kind == EngineKind::kReference ? "reference" : "fast";
+}
+
+const char* lodName(LodScheme lod) {
+  return lod == LodScheme::kReport ? "report" : "error";
 }
 
 }  // namespace deltaz

@@ -17,6 +17,7 @@ struct ViewOptions {
   std::string size = "1280x720";
   std::string sun;
   std::string tolerance = "1";
+  std::string lod = "error";
   std::string color;
   std::string engine = "fast";
   std::string statistics_path, depth_path, pose_path;
@@ -45,5 +46,6 @@ Status placeCamera(const Database& database, const ViewOptions& options, View& v
 Status checkColorMap(const Database& database, const ViewOptions& options);
 
 const char* engineName(EngineKind kind);
+const char* lodName(LodScheme lod);
 
 }  // namespace deltaz

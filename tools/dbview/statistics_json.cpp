@@ -39,7 +39,15 @@ Json stagesJson(std::span<const FrameStatistics> repeats) {
   return json;
 }
 
-Json frameJson(std::span<const FrameStatistics> repeats) {
+Json objectsJson(const FrameStatistics::Objects& objects) {
+  return {{"out_of_view", objects.out_of_view},
+          {"drawn", objects.drawn},
+          {"drawn_twice", objects.drawn_twice},
+          {"faces", objects.faces},
+          {"faces_twice", objects.faces_twice}};
+}
+
+Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
   const FrameStatistics& first = repeats.front();
   Json json;
   json["nodes"] = {{"visited", first.nodes.visited},
@@ -48,6 +56,7 @@ Json frameJson(std::span<const FrameStatistics> repeats) {
                    {"facing_away", first.nodes.facing_away},
                    {"occluded", first.nodes.occluded},
                    {"drawn", first.nodes.drawn}};
+  if (lod == LodScheme::kReport) json["objects"] = objectsJson(first.objects);
   json["models"] = {{"visited", first.models.visited},
                     {"out_of_view", first.models.out_of_view},
                     {"drawn", first.models.drawn}};
@@ -94,10 +103,11 @@ Json statisticsJson(const std::string& area, const View& view, std::span<const F
   json["area"] = baseName(area);
   json["engine"] = engineName(view.engine);
   json["tolerance"] = view.render.tolerance;
+  json["lod"] = lodName(view.render.lod);
   json["repeat"] = repeats.size();
   json["camera"] = cameraJson(view.render.camera);
   json["sun"] = {{"azimuth", view.render.sun.azimuth}, {"elevation", view.render.sun.elevation}};
-  json["frames"] = Json::array({frameJson(repeats)});
+  json["frames"] = Json::array({frameJson(repeats, view.render.lod)});
   return json;
 }
 
