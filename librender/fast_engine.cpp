@@ -68,7 +68,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
 
   const std::vector<CutNode>& cut = schedule.nodes;
   const CutIndex index(database, cut);
-  const std::vector<std::uint8_t> wanted = nodesToProcess(database, cut, index, seams);
+  const std::vector<std::uint8_t> wanted = nodesToProcess(cut, index, seams);
   DELTAZ_TRY_ASSIGN(const std::vector<std::optional<TerrainTile>> tiles, readTiles(database, cut, wanted));
   DELTAZ_TRY_ASSIGN(const PartMeshes meshes, PartMeshes::read(database, models.parts));
   for (const std::optional<TerrainTile>& tile : tiles) {

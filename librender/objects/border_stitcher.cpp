@@ -105,40 +105,17 @@ bool faceOnEdge(const TerrainTile& tile, Side side, int edge) {
 
 }  // namespace
 
-std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
-                                         const CutIndex& index, const SeamIndex& seams) {
+std::vector<std::uint8_t> nodesToProcess(const std::vector<CutNode>& cut, const CutIndex& index,
+                                         const SeamIndex& seams) {
   std::vector<std::uint8_t> wanted(cut.size(), 0);
-  std::vector<std::uint32_t> waiting;
   for (std::uint32_t n = 0; n < cut.size(); ++n) {
     if (!cut[n].in_view) continue;
     wanted[n] = 1;
-    waiting.push_back(n);
     const LeafSeams* const leaf =
         cut[n].node.record.level == 0 ? seams.leaf(positionOf(cut[n].node.record)) : nullptr;
     if (leaf == nullptr) continue;
     for (const NodePosition& partner : leaf->partners) {
-      const std::uint32_t other = index.at(partner);
-      if (other == CutIndex::kNone || wanted[other] != 0) continue;
-      wanted[other] = 1;
-      waiting.push_back(other);
-    }
-  }
-  while (!waiting.empty()) {
-    const std::uint32_t n = waiting.back();
-    waiting.pop_back();
-    const NodeRecord& record = cut[n].node.record;
-    const Extent extent = extentOf(database, record);
-    const auto want_coarser = [&](std::uint32_t other) {
-      if (other == CutIndex::kNone || wanted[other] != 0 || cut[other].node.record.level <= record.level)
-        return;
-      wanted[other] = 1;
-      waiting.push_back(other);
-    };
-    for (const Side side : kSides) want_coarser(index.acrossWhole(positionOf(record), side));
-    for (int corner = 0; corner < 4; ++corner) {
-      const Touching around = touching(index, record.grid, extent.west + (corner & 1) * extent.span,
-                                       extent.south + (corner >> 1) * extent.span);
-      for (int k = 0; k < around.count; ++k) want_coarser(around.node[static_cast<std::size_t>(k)]);
+      if (const std::uint32_t other = index.at(partner); other != CutIndex::kNone) wanted[other] = 1;
     }
   }
   return wanted;

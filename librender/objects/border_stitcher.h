@@ -4,7 +4,7 @@
 // A post of the finer node that lies inside an edge of a coarser one is moved onto that edge, in space
 // (moving its height alone would leave a gap, since chords of a curved Earth bow in plan too); the coarser
 // node's face on that edge is split into a fan through the same points. No skirts, nothing drawn twice. The
-// result depends on the cut alone, not on what of it is in view.
+// result depends on the processed nodes of the cut alone.
 //
 //                coarse  A-----------B        the face under A-B becomes (A,m,C), (m,n,C), (n,B,C);
 //                        |\         /|        m and n, posts of the finer node above, get the
@@ -13,6 +13,9 @@
 //
 // An edge moves posts only where the coarser node draws a face on it; voids and area ends keep the finer
 // node's own border. At a post that several nodes have, colour (and so the normal) is the coarsest node's.
+//
+// Only processed nodes are there for the stitcher: a node that is not drawn moves nothing, since its border
+// cannot be seen. So a picture needs the nodes it draws and no others beside them.
 // Cost: proportional to the border. Thread-safety: const members from any thread.
 #pragma once
 
@@ -34,10 +37,10 @@ struct ProcessedNode {
   const TerrainVertices* vertices = nullptr;
 };
 
-// The nodes of a cut that must be processed to draw what is in view: those in view, the coarser ones that
-// touch them, and the leaves their seams stand on. One flag a node.
-std::vector<std::uint8_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
-                                         const CutIndex& index, const SeamIndex& seams);
+// The nodes of a cut that must be processed to draw what is in view: those in view, and the leaves their
+// seams stand on. One flag a node.
+std::vector<std::uint8_t> nodesToProcess(const std::vector<CutNode>& cut, const CutIndex& index,
+                                         const SeamIndex& seams);
 
 class BorderStitcher {
  public:

@@ -1,6 +1,6 @@
-// A cut through the quadtrees of an area: nodes of any levels that together cover everything once. What a
-// view draws is the part of its cut that is in view; the rest is there so that borders between levels come
-// out the same whatever the view shows.
+// A cut through the quadtrees of an area: nodes of any levels that together cover everything once. A picture
+// draws the part of its cut that can be seen and stitches its nodes to each other; the rest stands for all
+// that need not be opened.
 //
 // Indices are global ones of level 0: node (x, y) of level k spans posts x * leaf * 2^k .. (x + 1) * leaf *
 // 2^k. Thread-safety: const members from any thread.

@@ -42,7 +42,7 @@ double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::i
   std::uint32_t coarsest = CutIndex::kNone;
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::uint32_t node = index_.holding(grid, column - (quadrant & 1), row - ((quadrant >> 1) & 1));
-    if (node == CutIndex::kNone) continue;
+    if (node == CutIndex::kNone || !nodes_[node].in_view) continue;
     const NodeRecord& record = nodes_[node].node.record;
     const std::int64_t mask = (std::int64_t{1} << record.level) - 1;
     if ((column & mask) == 0 && (row & mask) == 0) continue;
@@ -70,7 +70,7 @@ double StripErrors::strip(std::uint32_t node, std::uint32_t& worst) const {
   worst = CutIndex::kNone;
   for (const Side side : kSides) {
     const std::uint32_t across = index_.acrossWhole(position, side);
-    if (across == CutIndex::kNone) continue;
+    if (across == CutIndex::kNone || !nodes_[across].in_view) continue;
     const Node& coarse = nodes_[across].node;
     if (coarse.record.level <= record.level) continue;
     const bool along_x = side == Side::kSouth || side == Side::kNorth;

@@ -5,7 +5,8 @@
 // part of the coarser node's surface, so the post moves by at most that node's geometric error along the
 // ellipsoid normal, plus the displacement of the edge's ends where still coarser nodes move those; and
 // sideways by the bow of the edge, a chord in space, against the line of posts under it. Inside the strip the
-// surface is the node's own plus the interpolated displacement, hence the sum.
+// surface is the node's own plus the interpolated displacement, hence the sum. Nodes that are not drawn move
+// nothing.
 //
 // Thread-safety: one thread at a time.
 #pragma once

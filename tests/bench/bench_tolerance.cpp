@@ -101,8 +101,8 @@ Result<bool> printTable(const Engine& engine, const Database& database, const Na
     FrameStatistics::Nodes counts;
     DELTAZ_TRY_ASSIGN(const Schedule schedule,
                       scheduleNodes(database, SeamIndex(database), transform, {tolerance}, counts));
-    const ContractFinding error =
-        measureContract(database, meshOfCut(database, schedule, transform), full, transform);
+    const ContractFinding error = measureContract(
+        database, meshOfCut(database, schedule, transform, MeshPart::kInView), full, transform);
     if (tolerance == 0) full_resolution = row.milliseconds;
     const double bound = row.statistics.projected_error;
     const bool line_kept = error.worst_pixels <= bound + 1e-6 && bound <= tolerance + 1e-6;

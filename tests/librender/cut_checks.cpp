@@ -105,14 +105,20 @@ std::array<std::uint32_t, 3> faceOver(const MeshNode& node, const Vector3& post,
 
 }  // namespace
 
-CutMesh meshOfCut(const Database& database, const Schedule& schedule, const ViewTransform& view) {
+CutMesh meshOfCut(const Database& database, const Schedule& schedule, const ViewTransform& view,
+                  MeshPart part) {
   CutMesh mesh;
   mesh.cut = schedule.nodes;
   const CutIndex index(database, mesh.cut);
+  const SeamIndex seams(database);
+  const std::vector<std::uint8_t> wanted = part == MeshPart::kWholeCut
+                                               ? std::vector<std::uint8_t>(mesh.cut.size(), 1)
+                                               : nodesToProcess(mesh.cut, index, seams);
   std::vector<TerrainVertices> vertices(mesh.cut.size());
   mesh.tiles.resize(mesh.cut.size());
   std::vector<ProcessedNode> processed(mesh.cut.size());
   for (std::size_t n = 0; n < mesh.cut.size(); ++n) {
+    if (wanted[n] == 0) continue;
     Result<TerrainTile> tile = database.terrain(mesh.cut[n].node);
     if (!tile.ok()) throw std::runtime_error(tile.error().message());
     mesh.tiles[n] = std::move(tile).value();
@@ -127,9 +133,9 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
     of_node.texture.resize(of_node.position.size());
     processed[n] = {&*mesh.tiles[n], &vertices[n]};
   }
-  const SeamIndex seams(database);
   const BorderStitcher stitcher(database, mesh.cut, index, seams, processed);
   for (std::uint32_t n = 0; n < mesh.cut.size(); ++n) {
+    if (part == MeshPart::kInView ? !mesh.cut[n].in_view : wanted[n] == 0) continue;
     MeshNode node;
     node.cut_node = n;
     TerrainSplits splits;
@@ -153,6 +159,11 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
     for (const TerrainFace& face : stitcher.seamFaces(n, node.vertices, &node.seam_vertices))
       node.faces.push_back(face.vertex);
     mesh.nodes.push_back(std::move(node));
+  }
+  if (part == MeshPart::kInView) {
+    for (std::size_t n = 0; n < mesh.cut.size(); ++n) {
+      if (!mesh.cut[n].in_view) mesh.tiles[n].reset();
+    }
   }
   return mesh;
 }

@@ -24,13 +24,18 @@ struct MeshNode {
   std::vector<BorderStitcher::SeamVertexName> seam_vertices;
 };
 
-// All nodes of a cut, in view or not, processed and stitched.
+// Nodes of a cut, processed and stitched.
 struct CutMesh {
   std::vector<CutNode> cut;
-  std::vector<std::optional<TerrainTile>> tiles;  // of each cut node
+  std::vector<std::optional<TerrainTile>> tiles;  // of each cut node that is here
   std::vector<MeshNode> nodes;
 };
-CutMesh meshOfCut(const Database& database, const Schedule& schedule, const ViewTransform& view);
+enum class MeshPart : std::uint8_t {
+  kWholeCut,  // all nodes, in view or not
+  kInView,    // what a picture draws, stitched as it stitches it; the others' tiles are missing
+};
+CutMesh meshOfCut(const Database& database, const Schedule& schedule, const ViewTransform& view,
+                  MeshPart part = MeshPart::kWholeCut);
 
 // The first fault found; empty if every edge off the coverage boundary is shared by exactly two faces with
 // identical vertices, every vertex of a post is the same wherever it is used, all faces turn the same way in

@@ -52,8 +52,10 @@ Outcome tryView(const Database& database, int n, const FullResolution* full, con
   outcome.largest_level_difference = levelDifference(database, mesh.cut);
   for (const MeshNode& node : mesh.nodes) outcome.faces += node.faces.size();
   outcome.crack = findCrack(database, mesh);
+  const CutMesh drawn = meshOfCut(database, schedule.value(), view, MeshPart::kInView);
+  if (outcome.crack.empty()) outcome.crack = findCrack(database, drawn);
   if (full != nullptr) {
-    const ContractFinding finding = measureContract(database, mesh, *full, view);
+    const ContractFinding finding = measureContract(database, drawn, *full, view);
     outcome.worst_pixels = finding.worst_pixels;
     outcome.worst_strip_pixels = finding.worst_strip_pixels;
     outcome.worst_share = finding.worst_pixels / options.tolerance;
