@@ -14,10 +14,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace deltaz {
+#include "librender/raster/raster_triangle.h"
 
-inline constexpr int kSubPixelBits = 8;
-inline constexpr int kSubPixels = 1 << kSubPixelBits;
+namespace deltaz {
 
 struct SnappedTriangle {
   std::array<std::int32_t, 3> x{}, y{};  // 1/256 pixel; x along j, y along i

@@ -21,9 +21,6 @@
 
 namespace deltaz {
 
-// How far beyond the picture positions are kept, pixels; pictures are at most as wide and high as this.
-inline constexpr int kGuardBand = 1 << 14;
-
 // Unsnapped position on the screen: what triangle set-up is given.
 struct ScreenVertex {
   double j = 0, i = 0, inverse_u = 0;

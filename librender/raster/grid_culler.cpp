@@ -1,0 +1,173 @@
+#include "librender/raster/grid_culler.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "librender/raster/grid_culler.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "librender/raster/raster_triangle.h"
+#include "librender/raster/tile_bins.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<std::int32_t, 16>;
+using Vec = hn::Vec<Tag>;
+using Mask = hn::Mask<Tag>;
+
+// Least and greatest of the coordinates of a face, or of a cell.
+struct Range {
+  Vec least, greatest;
+};
+
+HWY_INLINE Range joined(Range range, Vec value) {
+  return {hn::Min(range.least, value), hn::Max(range.greatest, value)};
+}
+
+class RowCuller {
+ public:
+  RowCuller(const GridRow& row, int width, int height)
+      : row_(row),
+        last_x_(hn::Set(d_, (width - 1) * kSubPixels)),
+        last_y_(hn::Set(d_, (height - 1) * kSubPixels)),
+        guard_low_x_(hn::Set(d_, (width - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
+        guard_low_y_(hn::Set(d_, (height - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
+        guard_high_x_(hn::Set(d_, (width - 1) * (kSubPixels / 2) + kGuardCoordinate - 1)),
+        guard_high_y_(hn::Set(d_, (height - 1) * (kSubPixels / 2) + kGuardCoordinate - 1)) {}
+
+  // Bottom faces to the front of `out`, top faces to the front of `top`.
+  void run(CulledFaces& out, CulledFaces& top, CullCounts& counts) {
+    const std::size_t lanes = hn::Lanes(d_);
+    for (std::size_t cell = 0; cell < row_.cells; cell += lanes) {
+      const Vec sw_x = hn::LoadU(d_, row_.south_x + cell), sw_y = hn::LoadU(d_, row_.south_y + cell);
+      const Vec se_x = hn::LoadU(d_, row_.south_x + cell + 1), se_y = hn::LoadU(d_, row_.south_y + cell + 1);
+      const Vec nw_x = hn::LoadU(d_, row_.north_x + cell), nw_y = hn::LoadU(d_, row_.north_y + cell);
+      const Vec ne_x = hn::LoadU(d_, row_.north_x + cell + 1), ne_y = hn::LoadU(d_, row_.north_y + cell + 1);
+      Mask bottom_in = hn::FirstN(d_, row_.cells - cell), top_in = bottom_in;
+      if (row_.drawn != nullptr) {
+        const hn::Rebind<std::uint8_t, Tag> bytes;
+        const Vec drawn = hn::PromoteTo(d_, hn::LoadU(bytes, row_.drawn + cell));
+        bottom_in = hn::And(bottom_in, hn::TestBit(drawn, hn::Set(d_, 1)));
+        top_in = hn::And(top_in, hn::TestBit(drawn, hn::Set(d_, 2)));
+      }
+      counts.in += hn::CountTrue(d_, bottom_in) + hn::CountTrue(d_, top_in);
+
+      // The diagonal is both faces'.
+      const Range diagonal_x{hn::Min(sw_x, ne_x), hn::Max(sw_x, ne_x)};
+      const Range diagonal_y{hn::Min(sw_y, ne_y), hn::Max(sw_y, ne_y)};
+      // Whole strips of cells lie beside the picture more often than not.
+      const Mask beside =
+          isBeside(joined(joined(diagonal_x, se_x), nw_x), joined(joined(diagonal_y, se_y), nw_y));
+      if (hn::AllTrue(d_, hn::Or(beside, hn::Not(hn::Or(bottom_in, top_in))))) {
+        counts.outside += hn::CountTrue(d_, bottom_in) + hn::CountTrue(d_, top_in);
+        continue;
+      }
+      const Vec along_x = hn::Sub(ne_x, sw_x), along_y = hn::Sub(ne_y, sw_y);
+      const auto cell_number = static_cast<std::int32_t>(cell);
+      // Twice the area, positive for clockwise on the screen: bottom (SW, NE, SE), top (SW, NW, NE).
+      const Vec bottom_area =
+          hn::Sub(hn::Mul(along_x, hn::Sub(se_y, sw_y)), hn::Mul(hn::Sub(se_x, sw_x), along_y));
+      const Vec top_area =
+          hn::Sub(hn::Mul(hn::Sub(nw_x, sw_x), along_y), hn::Mul(along_x, hn::Sub(nw_y, sw_y)));
+      cull(joined(diagonal_x, se_x), joined(diagonal_y, se_y), bottom_area, bottom_in, cell_number, 0, out,
+           counts);
+      cull(joined(diagonal_x, nw_x), joined(diagonal_y, nw_y), top_area, top_in, cell_number, 1, top, counts);
+    }
+  }
+
+ private:
+  // Of ranges without a vertex before the hither plane, or with nothing but such.
+  HWY_INLINE Mask isBeside(Range x, Range y) const {
+    const Vec zero = hn::Zero(d_), hither = hn::Set(d_, kBeforeHitherCoordinate);
+    const Mask beside = hn::Or(hn::Or(hn::Lt(x.greatest, zero), hn::Gt(x.least, last_x_)),
+                               hn::Or(hn::Lt(y.greatest, zero), hn::Gt(y.least, last_y_)));
+    return hn::Or(hn::And(beside, hn::Lt(x.greatest, hither)), hn::Eq(x.least, hither));
+  }
+
+  HWY_INLINE void cull(Range x, Range y, Vec area, Mask in, std::int32_t cell, std::int32_t top,
+                       CulledFaces& out, CullCounts& counts) const {
+    const Mask beside = hn::And(in, isBeside(x, y));
+    const Vec limit = hn::Set(d_, (1 << 15) - 1);
+    const Mask exceptional = hn::AndNot(
+        beside,
+        hn::And(in,
+                hn::Or(hn::Or(hn::Gt(hn::Sub(x.greatest, x.least), limit),
+                              hn::Gt(hn::Sub(y.greatest, y.least), limit)),
+                       hn::Or(hn::Or(hn::Lt(x.least, guard_low_x_), hn::Gt(x.greatest, guard_high_x_)),
+                              hn::Or(hn::Lt(y.least, guard_low_y_), hn::Gt(y.greatest, guard_high_y_))))));
+    Mask left = hn::AndNot(hn::Or(beside, exceptional), in);
+    const Mask back = hn::And(left, hn::Lt(area, hn::Zero(d_)));
+    left = hn::AndNot(back, left);
+    const Vec first_j =
+        hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(x.least, hn::Set(d_, kSubPixels - 1))));
+    const Vec first_i =
+        hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(y.least, hn::Set(d_, kSubPixels - 1))));
+    const Vec last_j = hn::ShiftRight<kSubPixelBits>(hn::Min(x.greatest, last_x_));
+    const Vec last_i = hn::ShiftRight<kSubPixelBits>(hn::Min(y.greatest, last_y_));
+    const Mask empty = hn::And(
+        left, hn::Or(hn::Eq(area, hn::Zero(d_)), hn::Or(hn::Gt(first_j, last_j), hn::Gt(first_i, last_i))));
+    left = hn::AndNot(empty, left);
+    counts.outside += hn::CountTrue(d_, beside);
+    counts.back_facing += hn::CountTrue(d_, back);
+    counts.no_sample += hn::CountTrue(d_, empty);
+    const Mask kept = hn::Or(left, exceptional);
+    if (hn::AllFalse(d_, kept)) return;
+
+    constexpr int kTileShift = 6;
+    static_assert(1 << kTileShift == kTileSide);
+    const Vec range = hn::Or(
+        hn::Or(hn::ShiftRight<kTileShift>(first_j), hn::ShiftLeft<8>(hn::ShiftRight<kTileShift>(first_i))),
+        hn::Or(hn::ShiftLeft<16>(hn::ShiftRight<kTileShift>(last_j)),
+               hn::ShiftLeft<24>(hn::ShiftRight<kTileShift>(last_i))));
+    const Vec tiles =
+        hn::IfThenElse(exceptional, hn::Set(d_, static_cast<std::int32_t>(kExceptional)), range);
+    const Vec face = hn::Add(hn::Iota(d_, cell), hn::Iota(d_, cell));
+    const hn::RebindToUnsigned<Tag> du;
+    const auto kept_unsigned = hn::RebindMask(du, kept);
+    hn::CompressStore(hn::BitCast(du, hn::Or(face, hn::Set(d_, top))), kept_unsigned, du,
+                      out.face + out.count);
+    out.count += hn::CompressStore(hn::BitCast(du, tiles), kept_unsigned, du, out.tiles + out.count);
+  }
+
+  const Tag d_;
+  const GridRow& row_;
+  const Vec last_x_, last_y_, guard_low_x_, guard_low_y_, guard_high_x_, guard_high_y_;
+};
+
+void cullRow(const GridRow& row, int width, int height, CulledFaces& out, CulledFaces& top,
+             CullCounts& counts) {
+  RowCuller(row, width, height).run(out, top, counts);
+}
+
+}  // namespace
+}  // namespace deltaz::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace deltaz {
+namespace {
+HWY_EXPORT(cullRow);
+}
+
+void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts) {
+  out.count = 0;
+  // Top faces wait in the upper half until the number of bottom faces is known.
+  const std::size_t half = row.cells + kRowPadding;
+  CulledFaces top{out.face + half, out.tiles + half, 0};
+  HWY_DYNAMIC_DISPATCH(cullRow)(row, width, height, out, top, counts);
+  std::copy_n(top.face, top.count, out.face + out.count);
+  std::copy_n(top.tiles, top.count, out.tiles + out.count);
+  out.count += top.count;
+}
+
+}  // namespace deltaz
+
+#endif  // HWY_ONCE

@@ -1,0 +1,357 @@
+#include "librender/raster/mesh_renderer.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <unordered_map>
+
+#include "librender/raster/grid_culler.h"
+#include "librender/raster/tile_rasterizer.h"
+#include "librender/raster/triangle_placement.h"
+#include "librender/raster/vertex_projection.h"
+
+namespace deltaz {
+namespace {
+
+// Cells of a grid that are one item of work.
+constexpr int kItemColumns = 64, kItemRows = 32;
+constexpr std::size_t kMeshletVertices = 255, kMeshletTriangles = 255;
+constexpr std::size_t kMeshletsOfItem = 8;
+
+struct Item {
+  bool grid = true;
+  std::uint32_t mesh = 0;
+  std::uint32_t first = 0, count = 0;              // meshlets
+  int column = 0, row = 0, columns = 0, rows = 0;  // cells of a grid
+};
+
+// Room for one row of an item's vertices, or for a meshlet's.
+struct VertexRoom {
+  static constexpr std::size_t kVertices = 256 + kRowPadding;
+  alignas(64) std::array<RasterVertex, kVertices> vertex;
+  alignas(64) std::array<std::int32_t, kVertices> x, y;
+
+  ProjectedVertices out() { return {vertex.data(), x.data(), y.data()}; }
+};
+
+void add(const CullCounts& culled, MeshCounts& counts) {
+  counts.in += culled.in;
+  counts.outside += culled.outside;
+  counts.back_facing += culled.back_facing;
+  counts.no_sample += culled.no_sample;
+}
+
+Vector3 meshPosition(const ViewTransform& view, const MeshVertices& vertices, std::size_t index) {
+  return view.toView({static_cast<double>(vertices.x[index]), static_cast<double>(vertices.y[index]),
+                      static_cast<double>(vertices.z[index])});
+}
+
+std::uint32_t mixedColor(const std::array<std::uint32_t, 3>& colors, const std::array<float, 2>& weight) {
+  std::uint32_t mixed = 0xFF000000;
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto value = [&](std::size_t k) { return static_cast<float>(colors[k] >> (8 * channel) & 0xFF); };
+    const float sum = value(0) * (1 - weight[0] - weight[1]) + value(1) * weight[0] + value(2) * weight[1];
+    mixed |= static_cast<std::uint32_t>(std::clamp(sum + 0.5F, 0.0F, 255.0F)) << (8 * channel);
+  }
+  return mixed;
+}
+
+}  // namespace
+
+std::size_t MeshVertices::size() const {
+  return x.size() - kRowPadding;
+}
+
+void MeshVertices::append(float vertex_x, float vertex_y, float vertex_z, std::uint32_t color) {
+  x.push_back(vertex_x);
+  y.push_back(vertex_y);
+  z.push_back(vertex_z);
+  rgba.push_back(color);
+}
+
+void MeshVertices::pad() {
+  const std::size_t padded = x.size() + kRowPadding;
+  x.resize(padded);
+  y.resize(padded);
+  z.resize(padded);
+  rgba.resize(padded);
+}
+
+IndexedMesh::IndexedMesh(const MeshVertices& vertices,
+                         std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::unordered_map<std::uint32_t, std::uint8_t> local;
+  const auto close = [&] {
+    if (meshlets_.empty()) return;
+    meshlets_.back().vertices =
+        static_cast<std::uint32_t>(vertices_.x.size()) - meshlets_.back().first_vertex;
+    meshlets_.back().triangles =
+        static_cast<std::uint32_t>(triangles_.size()) - meshlets_.back().first_triangle;
+  };
+  const auto open = [&] {
+    close();
+    local.clear();
+    meshlets_.push_back({static_cast<std::uint32_t>(vertices_.x.size()), 0,
+                         static_cast<std::uint32_t>(triangles_.size()), 0});
+  };
+  for (const std::array<std::uint32_t, 3>& triangle : triangles) {
+    if (meshlets_.empty() || local.size() + 3 > kMeshletVertices ||
+        triangles_.size() - meshlets_.back().first_triangle == kMeshletTriangles)
+      open();
+    std::array<std::uint8_t, 3>& corners = triangles_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [found, is_new] = local.try_emplace(triangle[k], static_cast<std::uint8_t>(local.size()));
+      corners[k] = found->second;
+      if (is_new)
+        vertices_.append(vertices.x[triangle[k]], vertices.y[triangle[k]], vertices.z[triangle[k]],
+                         vertices.rgba[triangle[k]]);
+    }
+  }
+  close();
+  vertices_.pad();
+}
+
+struct MeshRenderer::Worker {
+  VertexRoom room[2];
+  std::array<std::uint32_t, 2 * (kItemColumns + kRowPadding)> face, tiles;
+  MeshCounts counts;
+  TileBuffer buffer;
+  TileCounts tile_counts;
+  std::vector<TileBins::Segment> segments;
+  std::vector<const RasterTriangle*> triangles;
+  GouraudScratch scratch;
+
+  void drawGrid(const ViewTransform& view, const MeshProjection& projection, const GridMesh& mesh,
+                const Item& item, TileBins::Writer& writer);
+  void drawMeshlets(const ViewTransform& view, const MeshProjection& projection, const IndexedMesh& mesh,
+                    const Item& item, TileBins::Writer& writer);
+  // A face the integer tests could not decide.
+  void drawCarefully(const ViewTransform& view, const MeshVertices& vertices,
+                     const std::array<std::size_t, 3>& corners, RasterTriangle& triangle,
+                     TileBins::Writer& writer);
+};
+
+MeshRenderer::MeshRenderer() = default;
+MeshRenderer::~MeshRenderer() = default;
+
+void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProjection& projection,
+                                    const GridMesh& mesh, const Item& item, TileBins::Writer& writer) {
+  const auto columns = static_cast<std::size_t>(mesh.columns);
+  const auto first_of = [&](int row) {
+    return static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(item.column);
+  };
+  const auto project = [&](int row, VertexRoom& room_of_row) {
+    const std::size_t first = first_of(row);
+    const MeshVertices& v = mesh.vertices;
+    projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first, v.rgba.data() + first,
+                       static_cast<std::size_t>(item.columns) + 1, room_of_row.out());
+  };
+  VertexRoom *south = &room[0], *north = &room[1];
+  project(item.row, *south);
+  CullCounts culled;
+  RasterTriangle triangle;
+  triangle.node = triangle.clipped = 0;
+  for (int row = item.row; row < item.row + item.rows; ++row) {
+    project(row + 1, *north);
+    const GridRow cells{south->x.data(),
+                        south->y.data(),
+                        north->x.data(),
+                        north->y.data(),
+                        static_cast<std::size_t>(item.columns),
+                        nullptr};
+    CulledFaces faces{face.data(), tiles.data(), 0};
+    cullGridRow(cells, view.width, view.height, faces, culled);
+    for (std::size_t n = 0; n < faces.count; ++n) {
+      const std::uint32_t cell = faces.face[n] >> 1;
+      const bool top = (faces.face[n] & 1) != 0;
+      if (faces.tiles[n] == kExceptional) {
+        const std::size_t south_west = first_of(row) + cell, north_west = south_west + columns;
+        drawCarefully(view, mesh.vertices,
+                      {south_west, top ? north_west : north_west + 1, top ? north_west + 1 : south_west + 1},
+                      triangle, writer);
+        continue;
+      }
+      triangle.vertex[0] = south->vertex[cell];
+      triangle.vertex[1] = top ? north->vertex[cell] : north->vertex[cell + 1];
+      triangle.vertex[2] = top ? north->vertex[cell + 1] : south->vertex[cell + 1];
+      triangle.face = faces.face[n];
+      const std::uint32_t range = faces.tiles[n];
+      writer.add(triangle,
+                 {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
+                  static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)});
+    }
+    std::swap(south, north);
+  }
+  add(culled, counts);
+}
+
+void MeshRenderer::Worker::drawMeshlets(const ViewTransform& view, const MeshProjection& projection,
+                                        const IndexedMesh& mesh, const Item& item, TileBins::Writer& writer) {
+  RasterTriangle triangle;
+  triangle.node = triangle.clipped = 0;
+  const MeshVertices& v = mesh.vertices();
+  for (std::uint32_t m = item.first; m < item.first + item.count; ++m) {
+    const IndexedMesh::Meshlet& meshlet = mesh.meshlets()[m];
+    const std::size_t first = meshlet.first_vertex;
+    projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first, v.rgba.data() + first,
+                       meshlet.vertices, room[0].out());
+    counts.in += meshlet.triangles;
+    for (std::uint32_t t = meshlet.first_triangle; t < meshlet.first_triangle + meshlet.triangles; ++t) {
+      // Counter-clockwise seen from the front runs clockwise on the screen in the opposite order.
+      const std::size_t a = mesh.triangles()[t][0], b = mesh.triangles()[t][2], c = mesh.triangles()[t][1];
+      const std::array<std::int32_t, 3> x = {room[0].x[a], room[0].x[b], room[0].x[c]};
+      const std::array<std::int32_t, 3> y = {room[0].y[a], room[0].y[b], room[0].y[c]};
+      const std::int32_t centre_x = (view.width - 1) * (kSubPixels / 2),
+                         centre_y = (view.height - 1) * (kSubPixels / 2);
+      bool in_guard_band = true;
+      for (std::size_t k = 0; k < 3; ++k)
+        in_guard_band &=
+            std::abs(x[k] - centre_x) < kGuardCoordinate && std::abs(y[k] - centre_y) < kGuardCoordinate;
+      if (!in_guard_band) {
+        drawCarefully(view, v, {first + a, first + b, first + c}, triangle, writer);
+        continue;
+      }
+      const TrianglePlacement placed = placeTriangle(x, y, view.width, view.height);
+      switch (placed.fate) {
+        case TriangleFate::kOutside:
+          ++counts.outside;
+          break;
+        case TriangleFate::kBackFacing:
+          ++counts.back_facing;
+          break;
+        case TriangleFate::kNoSample:
+          ++counts.no_sample;
+          break;
+        case TriangleFate::kKept:
+          triangle.vertex[0] = room[0].vertex[a];
+          triangle.vertex[1] = room[0].vertex[b];
+          triangle.vertex[2] = room[0].vertex[c];
+          triangle.face = t;
+          writer.add(triangle, placed.tiles);
+          break;
+      }
+    }
+  }
+}
+
+void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVertices& vertices,
+                                         const std::array<std::size_t, 3>& corners, RasterTriangle& triangle,
+                                         TileBins::Writer& writer) {
+  std::array<Vector3, 3> positions;
+  std::array<std::uint32_t, 3> colors{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    positions[k] = meshPosition(view, vertices, corners[k]);
+    colors[k] = vertices.rgba[corners[k]];
+  }
+  if (isOutsidePicture(positions, view.width, view.height)) {
+    ++counts.outside;
+    return;
+  }
+  const ClippedFace clipped = clipFace(positions);
+  // Pieces of one face are counted by the worst that befell it.
+  TriangleFate fate = TriangleFate::kOutside;
+  std::uint64_t kept = 0;
+  for (std::size_t k = 1; k + 1 < clipped.corners; ++k) {
+    const std::array<std::size_t, 3> corner = {0, k, k + 1};
+    std::array<std::int32_t, 3> x{}, y{};
+    for (std::size_t n = 0; n < 3; ++n) {
+      triangle.vertex[n] = clipped.corner[corner[n]];
+      triangle.vertex[n].payload = mixedColor(colors, clipped.weight[corner[n]]);
+      x[n] = snappedCoordinate(triangle.vertex[n].x, view.width);
+      y[n] = snappedCoordinate(triangle.vertex[n].y, view.height);
+    }
+    const TrianglePlacement placed = placeTriangle(x, y, view.width, view.height);
+    if (placed.fate != TriangleFate::kKept) {
+      fate = std::max(fate, placed.fate);
+      continue;
+    }
+    writer.add(triangle, placed.tiles);
+    ++kept;
+  }
+  // Every piece is counted as a triangle where it is drawn.
+  if (kept > 1) counts.in += kept - 1;
+  if (kept > 0) return;
+  counts.outside += fate == TriangleFate::kOutside ? 1 : 0;
+  counts.back_facing += fate == TriangleFate::kBackFacing ? 1 : 0;
+  counts.no_sample += fate == TriangleFate::kNoSample ? 1 : 0;
+}
+
+MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMesh> grids,
+                              std::span<const IndexedMesh> meshes, ColorFrame& frame) {
+  std::vector<Item> items;
+  for (std::uint32_t n = 0; n < grids.size(); ++n) {
+    const int columns = grids[n].columns - 1, rows = grids[n].rows - 1;
+    for (int row = 0; row < rows; row += kItemRows) {
+      for (int column = 0; column < columns; column += kItemColumns)
+        items.push_back({true, n, 0, 0, column, row, std::min(kItemColumns, columns - column),
+                         std::min(kItemRows, rows - row)});
+    }
+  }
+  for (std::uint32_t n = 0; n < meshes.size(); ++n) {
+    const std::size_t count = meshes[n].meshlets().size();
+    for (std::size_t first = 0; first < count; first += kMeshletsOfItem)
+      items.push_back({false, n, static_cast<std::uint32_t>(first),
+                       static_cast<std::uint32_t>(std::min(kMeshletsOfItem, count - first)), 0, 0, 0, 0});
+  }
+
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  while (workers_.size() < threads) workers_.push_back(std::make_unique<Worker>());
+  for (const std::unique_ptr<Worker>& worker : workers_) {
+    worker->counts = {};
+    worker->tile_counts = {};
+  }
+  const auto own = [] { return static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()); };
+
+  bins_.reset(view.width, view.height, threads);
+  const MeshProjection projection(view);
+  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t n) {
+    Worker& worker = *workers_[own()];
+    TileBins::Writer& writer = bins_.writer(own());
+    writer.begin(static_cast<std::uint32_t>(n));
+    const Item& item = items[n];
+    if (item.grid) {
+      worker.drawGrid(view, projection, grids[item.mesh], item, writer);
+    } else {
+      worker.drawMeshlets(view, projection, meshes[item.mesh], item, writer);
+    }
+  });
+  bins_.finish();
+
+  crossing_.assign(bins_.crossingCount(), 0);
+  tbb::parallel_for(std::size_t{0}, bins_.tileCount(), [&](std::size_t t) {
+    Worker& worker = *workers_[own()];
+    bins_.segmentsOf(t, worker.segments);
+    worker.triangles.clear();
+    for (const TileBins::Segment& segment : worker.segments) {
+      for (std::uint32_t n = 0; n < segment.count; ++n) worker.triangles.push_back(segment.first + n);
+    }
+    const auto across = static_cast<std::size_t>(bins_.tilesAcross());
+    const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};
+    worker.buffer.clear();
+    rasterizeTile(tile, worker.triangles, crossing_, worker.buffer, worker.tile_counts);
+    shadeTileGouraud(tile, worker.triangles, worker.buffer, worker.scratch, frame);
+  });
+
+  MeshCounts counts;
+  for (const std::unique_ptr<Worker>& worker : workers_) {
+    counts.in += worker->counts.in;
+    counts.outside += worker->counts.outside;
+    counts.back_facing += worker->counts.back_facing;
+    counts.no_sample += worker->counts.no_sample + worker->tile_counts.no_sample;
+    counts.drawn += worker->tile_counts.drawn;
+    counts.hidden += worker->tile_counts.hidden;
+    counts.samples_tested += worker->tile_counts.tested;
+    counts.samples_written += worker->tile_counts.written;
+  }
+  // What touches several tiles; numbers that were taken but not used have no bits either, so the sum tells.
+  std::uint64_t covers = 0, hidden = 0;
+  for (const std::uint8_t bits : crossing_) {
+    covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
+    hidden += bits == kCrossingHidden ? 1 : 0;
+  }
+  counts.drawn += covers + hidden;
+  counts.hidden += hidden;
+  counts.no_sample = counts.in - counts.outside - counts.back_facing - counts.drawn;
+  return counts;
+}
+
+}  // namespace deltaz

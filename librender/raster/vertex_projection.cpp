@@ -1,0 +1,117 @@
+#include "librender/raster/vertex_projection.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "librender/raster/vertex_projection.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "librender/raster/grid_culler.h"
+#include "librender/scene/view_volume.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Snapped positions of vertices at (x, y) pixels from the centre; `before`: not in front of the hither plane.
+template <class D, class V, class M>
+HWY_INLINE void storeSnapped(D d, V x, V y, M before, int width, int height, const ProjectedVertices& out,
+                             std::size_t first) {
+  const hn::RebindToSigned<D> di;
+  const auto guard = hn::Set(d, static_cast<float>(kGuardBand)),
+             scale = hn::Set(d, static_cast<float>(kSubPixels));
+  const auto snapped = [&](V position, int extent) {
+    const auto kept = hn::Min(hn::Max(position, hn::Neg(guard)), guard);
+    const auto from_first_pixel =
+        hn::Add(hn::NearestInt(hn::Mul(kept, scale)), hn::Set(di, (extent - 1) * (kSubPixels / 2)));
+    return hn::IfThenElse(hn::RebindMask(di, before), hn::Set(di, kBeforeHitherCoordinate), from_first_pixel);
+  };
+  hn::StoreU(snapped(x, width), di, out.snapped_x + first);
+  hn::StoreU(snapped(y, height), di, out.snapped_y + first);
+}
+
+void projectMesh(const MeshProjection& projection, const float* x, const float* y, const float* z,
+                 const std::uint32_t* payload, std::size_t count, const ProjectedVertices& out) {
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
+    const auto dx = hn::Sub(hn::LoadU(d, x + n), hn::Set(d, projection.eye[0]));
+    const auto dy = hn::Sub(hn::LoadU(d, y + n), hn::Set(d, projection.eye[1]));
+    const auto dz = hn::Sub(hn::LoadU(d, z + n), hn::Set(d, projection.eye[2]));
+    const auto along = [&](const float(&axis)[3]) {
+      return hn::Add(hn::Add(hn::Mul(dx, hn::Set(d, axis[0])), hn::Mul(dy, hn::Set(d, axis[1]))),
+                     hn::Mul(dz, hn::Set(d, axis[2])));
+    };
+    const auto u = along(projection.forward), v = along(projection.right), w = along(projection.down);
+    const auto before = hn::Lt(u, hn::Set(d, projection.hither));
+    const auto inverse_u = hn::Div(hn::Set(d, 1.0F), u);
+    const auto sx = hn::Mul(v, inverse_u), sy = hn::Mul(w, inverse_u);
+    hn::StoreInterleaved4(sx, sy, inverse_u, hn::BitCast(d, hn::LoadU(du, payload + n)), d,
+                          reinterpret_cast<float*>(out.vertex + n));
+    storeSnapped(d, sx, sy, before, projection.width, projection.height, out, n);
+  }
+}
+
+void projectDoubles(const double* u, const double* v, const double* w, std::size_t count, int width,
+                    int height, const ProjectedVertices& out) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<float, decltype(d)> df;
+  const hn::RebindToSigned<decltype(df)> di;
+  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
+    const auto depth = hn::LoadU(d, u + n);
+    const auto before = hn::Lt(depth, hn::Set(d, kHither));
+    const auto inverse_u = hn::Div(hn::Set(d, 1.0), hn::IfThenElse(before, hn::Set(d, 1.0), depth));
+    const auto guard = hn::Set(d, 2.0 * kGuardBand);
+    const auto position = [&](const double* p) {
+      return hn::DemoteTo(df,
+                          hn::Min(hn::Max(hn::Mul(hn::LoadU(d, p + n), inverse_u), hn::Neg(guard)), guard));
+    };
+    const auto sx = position(v), sy = position(w);
+    hn::StoreInterleaved4(sx, sy, hn::DemoteTo(df, inverse_u),
+                          hn::BitCast(df, hn::Iota(di, static_cast<std::int32_t>(n))), df,
+                          reinterpret_cast<float*>(out.vertex + n));
+    const auto narrow = hn::DemoteTo(df, hn::IfThenElse(before, hn::Set(d, 1.0), hn::Zero(d)));
+    storeSnapped(df, sx, sy, hn::Gt(narrow, hn::Zero(df)), width, height, out, n);
+  }
+}
+
+}  // namespace
+}  // namespace deltaz::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace deltaz {
+namespace {
+HWY_EXPORT(projectMesh);
+HWY_EXPORT(projectDoubles);
+
+void toFloats(const Vector3& v, double scale, float (&out)[3]) {
+  out[0] = static_cast<float>(v.x * scale);
+  out[1] = static_cast<float>(v.y * scale);
+  out[2] = static_cast<float>(v.z * scale);
+}
+}  // namespace
+
+MeshProjection::MeshProjection(const ViewTransform& view)
+    : width(view.width), height(view.height), hither(static_cast<float>(kHither)) {
+  toFloats(view.eye, 1, eye);
+  toFloats(view.forward, 1, forward);
+  toFloats(view.right, view.pixels, right);
+  toFloats(view.down, view.pixels, down);
+}
+
+void MeshProjection::project(const float* x, const float* y, const float* z, const std::uint32_t* payload,
+                             std::size_t count, const ProjectedVertices& out) const {
+  HWY_DYNAMIC_DISPATCH(projectMesh)(*this, x, y, z, payload, count, out);
+}
+
+void projectViewPositions(const double* u, const double* v, const double* w, std::size_t count, int width,
+                          int height, const ProjectedVertices& out) {
+  HWY_DYNAMIC_DISPATCH(projectDoubles)(u, v, w, count, width, height, out);
+}
+
+}  // namespace deltaz
+
+#endif  // HWY_ONCE
