@@ -1,7 +1,8 @@
-// dbview: a database and a viewpoint in, a picture out. See dbview(1).
+// dbview: a database and a viewpoint in, a picture out; or what accuracy costs. See dbview(1).
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
+#include <string_view>
 #include <vector>
 
 #include "tools/common/output_file.h"
@@ -9,8 +10,8 @@
 #include "tools/common/progress.h"
 #include "tools/dbview/depth_description.h"
 #include "tools/dbview/options.h"
-#include "tools/dbview/pose_file.h"
 #include "tools/dbview/statistics_json.h"
+#include "tools/dbview/sweep_command.h"
 
 namespace deltaz {
 
@@ -64,9 +65,8 @@ void printSummary(const ViewOptions& options, const View& view, const Json& stat
 Result<int> run(const ViewOptions& options) {
   DELTAZ_TRY_ASSIGN(View view, parseView(options));
   DELTAZ_TRY_ASSIGN(const Database database, Database::open(localFileSystem(), options.area));
-  DELTAZ_TRY(placeCamera(database, options, view));
-  DELTAZ_TRY(checkColorMap(database, options));
-  DELTAZ_TRY(checkPoses(database, view.render.poses, options.pose_path));
+  DELTAZ_TRY_ASSIGN(view.render.camera, placeCamera(database, view.camera));
+  DELTAZ_TRY(checkScene(database, options.scene, view.render));
   DELTAZ_TRY_ASSIGN(const Frame frame, renderFrame(database, view, options.common));
 
   const Json statistics = statisticsJson(options.area, view, frame.repeats);
@@ -93,6 +93,16 @@ int main(int argc, char** argv) {
   using namespace deltaz;
   return runTool("dbview", [&]() -> Result<int> {
     CLI::App app("Draws a terrain database from a viewpoint.", "dbview");
+    // A subcommand is known by the first word, so that drawing, the tool's main purpose, needs none.
+    if (argc > 1 && std::string_view(argv[1]) == "sweep") {
+      SweepOptions options;
+      app.set_help_flag("-h,--help", "Print this help and exit");
+      CLI::App& command =
+          *app.add_subcommand("sweep", "Measures run time against error, for a database and views.");
+      addSweepOptions(command, options);
+      if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
+      return runSweep(options);
+    }
     ViewOptions options;
     addViewOptions(app, options);
     if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;

@@ -11,62 +11,23 @@
 #include <tuple>
 
 #include "formats/file_system.h"
-#include "formats/near_names.h"
 #include "libdb/access/model.h"
 #include "librender/scene/pose_table.h"
-#include "tools/common/json_output.h"
+#include "tools/common/strict_json.h"
 
 namespace deltaz {
 namespace {
 
 constexpr std::uint64_t kLargestFile = 64u << 20;
 
+const StrictJson kReader("See MOVED PARTS in dbview(1)");
+
 Error bad(const std::string& where, const std::string& what, const std::string& why = {}) {
-  return invalidError(IssueCode::kNone, where, what, why, "See MOVED PARTS in dbview(1)");
+  return kReader.bad(where, what, why);
 }
 
-// Parses strictly: JSON's own rules, and no member twice, of which the parser would keep the last.
-Result<Json> parseStrictly(std::string_view text, const std::string& where) {
-  std::vector<std::set<std::string>> members;
-  std::string twice;
-  const auto look = [&](int, Json::parse_event_t event, Json& value) {
-    if (event == Json::parse_event_t::object_start) {
-      members.emplace_back();
-    } else if (event == Json::parse_event_t::object_end) {
-      members.pop_back();
-    } else if (event == Json::parse_event_t::key && !members.back().insert(value.get<std::string>()).second) {
-      twice = value.get<std::string>();
-    }
-    return true;
-  };
-  try {
-    Json json = Json::parse(text, look);
-    if (!twice.empty()) return bad(where, fmt::format("the member \"{}\" stands twice in one object", twice));
-    return json;
-  } catch (const Json::parse_error& error) {
-    return bad(where, "this is no JSON", fmt::format("it makes no sense at byte {}", error.byte));
-  } catch (const std::exception&) {
-    return bad(where, "this is no JSON");
-  }
-}
-
-// An object all of whose members are known.
 Status checkMembers(const Json& json, const std::string& where, const std::vector<std::string>& known) {
-  if (!json.is_object()) return bad(where, "this is no object", "it is " + std::string(json.type_name()));
-  for (const auto& member : json.items()) {
-    bool found = false;
-    for (const std::string& name : known) found = found || name == member.key();
-    if (!found)
-      return bad(where, fmt::format("there is no member \"{}\"", member.key()),
-                 nearNamesText(member.key(), known));
-  }
-  return Success{};
-}
-
-Result<std::string> nameOf(const Json& json, const std::string& where, const char* member) {
-  if (!json.contains(member)) return bad(where, fmt::format("the member \"{}\" is missing", member));
-  if (!json[member].is_string()) return bad(where, fmt::format("\"{}\" is no text", member));
-  return json[member].get<std::string>();
+  return kReader.checkMembers(json, where, known);
 }
 
 Result<double> numberOf(const Json& json, const std::string& where) {
@@ -141,8 +102,8 @@ Result<PartPose> poseOf(const Json& json, const std::string& where) {
   DELTAZ_TRY(
       checkMembers(json, where, {"model", "part", "instance", "translate", "rotate", "scale", "matrix"}));
   PartPose pose;
-  DELTAZ_TRY_ASSIGN(pose.model, nameOf(json, where, "model"));
-  DELTAZ_TRY_ASSIGN(pose.part, nameOf(json, where, "part"));
+  DELTAZ_TRY_ASSIGN(pose.model, kReader.textOf(json, where, "model"));
+  DELTAZ_TRY_ASSIGN(pose.part, kReader.textOf(json, where, "part"));
   if (json.contains("instance")) {
     const Json& instance = json["instance"];
     if (!instance.is_number_unsigned() || instance.get<std::uint64_t>() < 1 ||
@@ -157,7 +118,7 @@ Result<PartPose> poseOf(const Json& json, const std::string& where) {
 }  // namespace
 
 Result<std::vector<PartPose>> parsePoses(std::string_view text, const std::string& where) {
-  DELTAZ_TRY_ASSIGN(const Json json, parseStrictly(text, where));
+  DELTAZ_TRY_ASSIGN(const Json json, kReader.parse(text, where));
   DELTAZ_TRY(checkMembers(json, where, {"poses"}));
   if (!json.contains("poses") || !json["poses"].is_array())
     return bad(where, "the member \"poses\" is missing or no array");

@@ -1,34 +1,27 @@
 #include "tools/dbview/statistics_json.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "formats/file_system.h"
+#include "librender/sweep/spread.h"
 
 namespace deltaz {
 
 namespace {
 
-// Minimum, median (of an even number: the mean of the middle two) and maximum.
-struct Spread {
-  double minimum = 0, median = 0, maximum = 0;
-};
-
 template <typename Value>
-Spread spreadOf(std::span<const FrameStatistics> repeats, Value value) {
+Spread spreadOfTimes(std::span<const FrameStatistics> repeats, Value value) {
   std::vector<double> values;
   for (const FrameStatistics& frame : repeats) values.push_back(value(frame.milliseconds));
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-  return {values.front(), median, values.back()};
+  return spreadOf(std::move(values));
 }
 
 Json stagesJson(std::span<const FrameStatistics> repeats) {
   using Milliseconds = FrameStatistics::Milliseconds;
   const auto median = [repeats](double Milliseconds::*stage) {
     return finiteOrNull(
-        spreadOf(repeats, [stage](const Milliseconds& times) { return times.*stage; }).median);
+        spreadOfTimes(repeats, [stage](const Milliseconds& times) { return times.*stage; }).median);
   };
   Json json;
   json["schedule"] = median(&Milliseconds::schedule);
@@ -76,7 +69,7 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
   json["projected_error"] = finiteOrNull(first.projected_error);
   json["stages_ms"] = stagesJson(repeats);
   const Spread total =
-      spreadOf(repeats, [](const FrameStatistics::Milliseconds& times) { return times.total; });
+      spreadOfTimes(repeats, [](const FrameStatistics::Milliseconds& times) { return times.total; });
   json["frame_ms"] = {{"min", finiteOrNull(total.minimum)},
                       {"median", finiteOrNull(total.median)},
                       {"max", finiteOrNull(total.maximum)}};

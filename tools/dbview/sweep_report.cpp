@@ -1,0 +1,110 @@
+#include "tools/dbview/sweep_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <span>
+
+namespace deltaz {
+
+namespace {
+
+// Two significant digits, and no more zeros than needed.
+std::string shortNumber(double value) {
+  if (!std::isfinite(value)) return "?";
+  if (value == 0) return "0";
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 6);
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string decibels(const PictureError& error) {
+  const double value = error.peakSignalToNoise();
+  return std::isfinite(value) ? fmt::format("{:.1f}", value) : "same";
+}
+
+bool contains(const std::vector<std::size_t>& front, std::size_t k) {
+  return std::find(front.begin(), front.end(), k) != front.end();
+}
+
+std::string tableOf(const SweepReport& report, std::span<const SweepRow> rows) {
+  std::string text = fmt::format("{:>8}", "tol px");
+  if (report.sweepsQuanta()) text += fmt::format(" {:>9}", "quantum m");
+  text += fmt::format(" {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>8} {:>7} {:>10} {:>9}  {}\n", "ms", "least",
+                      "most", "worst px", "99.9% px", "bound px", "differ", "PSNR dB", "triangles",
+                      "read KiB", "front");
+  const std::vector<std::size_t> moved = frontOf(rows, SweepMeasure::kDisplacement),
+                                 colored = frontOf(rows, SweepMeasure::kPicture);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const SweepRow& row = rows[k];
+    std::string line = fmt::format("{:>8}", row.setting.tolerance);
+    if (report.sweepsQuanta()) line += fmt::format(" {:>9}", report.quanta[row.setting.database]);
+    line += fmt::format(
+        " {:>8.2f} {:>8.2f} {:>8.2f} {:>9.3f} {:>9.3f} {:>8.3f} {:>7.2f}% {:>7} {:>10} {:>9}  {}{}",
+        row.milliseconds.median, row.milliseconds.minimum, row.milliseconds.maximum, row.displacement.largest,
+        row.displacement.nearly_all, row.statistics.projected_error, 100 * row.picture.differingShare(),
+        decibels(row.picture), row.statistics.triangles.drawn, row.statistics.bytes_read / 1024,
+        contains(moved, k) ? "d" : "", contains(colored, k) ? "c" : "");
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string settingName(const SweepReport& report, const SweepSetting& setting) {
+  std::string name = fmt::format("{} px", setting.tolerance);
+  if (report.sweepsQuanta()) name += fmt::format(", quantum {} m", report.quanta[setting.database]);
+  return name;
+}
+
+std::string frontSentence(const SweepReport& report, SweepMeasure measure) {
+  std::string sentence;
+  for (const std::size_t k : frontOf(report.all, measure)) {
+    const SweepRow& row = report.all[k];
+    const bool first = sentence.empty();
+    std::string error;
+    if (measure == SweepMeasure::kDisplacement) {
+      error = shortNumber(row.displacement.largest);
+      error += first && row.displacement.largest > 1 ? " pixels cost" : first ? " pixel costs" : " pixel";
+      if (!first && row.displacement.largest > 1) error += "s";
+    } else if (row.picture.mean_square == 0) {
+      error = first ? "the reference's own colours cost" : "the reference's own colours";
+    } else {
+      error = decibels(row.picture) + (first ? " dB cost" : " dB");
+    }
+    sentence += fmt::format("{}{} {} ms ({})", first ? "" : ", ", error,
+                            fmt::format("{:.1f}", row.milliseconds.median), settingName(report, row.setting));
+  }
+  return sentence;
+}
+
+std::string textReport(const SweepReport& report) {
+  const SweepMachine& machine = report.machine;
+  std::string text = fmt::format("{}: {} view{}, {} settings, {} frames each on {} thread{}", report.area,
+                                 report.views.size(), report.views.size() == 1 ? "" : "s", report.all.size(),
+                                 report.repeats, machine.threads, machine.threads == 1 ? "" : "s");
+  text += machine.load_before >= 0 && machine.load_after >= 0
+              ? fmt::format("; load of the machine {:.1f} before, {:.1f} after, {} processors\n",
+                            machine.load_before, machine.load_after, machine.processors)
+              : "\n";
+  for (const SweepOfView& view : report.views) {
+    text += fmt::format("\n{}, {} x {}\n", view.view.name, view.view.camera.width, view.view.camera.height);
+    text += tableOf(report, view.rows);
+  }
+  if (report.views.size() > 1) {
+    text += "\nall views: mean times, worst displacements, sums\n";
+    text += tableOf(report, report.all);
+  }
+  text += fmt::format(
+      "\nfront: nothing is both faster and nearer to the full-resolution surface (d), or to the colours at "
+      "tolerance {} (c)\n",
+      report.reference_tolerance);
+  for (const SweepMeasure measure : {SweepMeasure::kDisplacement, SweepMeasure::kPicture}) {
+    if (const std::string sentence = frontSentence(report, measure); !sentence.empty())
+      text += sentence + ".\n";
+  }
+  return text;
+}
+
+}  // namespace deltaz
