@@ -91,6 +91,8 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["--sun"], ["dbview", area, *png, "--sun", "1,2,3"]),
             (["--tolerance"], ["dbview", area, *png, "--tolerance", "-1"]),
             (["--tolerance"], ["dbview", area, *png, "--tolerance", "1,5"]),
+            (["--lod"], ["dbview", area, *png, "--lod", "range"]),
+            (["--lod", "reference"], ["dbview", area, *png, "--lod", "report", "--engine", "reference"]),
             (["--engine"], ["dbview", area, *png, "--engine", "ars"]),
             (["--repeat"], ["dbview", area, *png, "--repeat", "0"]),
             (["--color"], ["dbview", area, *png, "--color", "summer"]),

@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "libdb/build/build_terrain.h"
 #include "tests/librender/test_databases.h"
 
 namespace deltaz {
@@ -195,6 +196,42 @@ TEST(ReportLod, at_the_first_level_is_the_picture_of_full_resolution) {
       EXPECT_EQ(by_range.depth, full.depth);
       EXPECT_EQ(by_range.triangle, full.triangle);
     }
+  }
+}
+
+// Seams stand on faces of full resolution, whatever the range.
+TEST(ReportLod, draws_grids_that_overlap_as_one_ground) {
+  SyntheticGridOptions inset = smallArea();
+  inset.seed = 2;
+  inset.south = 46.83;
+  inset.west = -121.77;
+  inset.columns = 145;
+  inset.rows = 121;
+  inset.spacing_latitude = inset.spacing_longitude = {1, 1};
+  BuildOptions build;
+  build.leaf_cells = 16;
+  MemoryFileSystem files;
+  ASSERT_TRUE(files.makeDirectory("/folder").ok());
+  const std::vector<RawGrid> grids = {syntheticGrid(inset), syntheticGrid(smallArea())};
+  ASSERT_TRUE(buildTerrain(files, grids, kMemoryDatabasePath, build).ok());
+  const Database database = Database::open(files, kMemoryDatabasePath).value();
+  ASSERT_EQ(database.seams().size(), 1u);
+  for (const Camera& camera : viewsOf(database)) {
+    RenderOptions options;
+    options.camera = camera;
+    options.tolerance = 0;
+    const Picture full = draw(EngineKind::kFast, database, options);
+    options.lod = LodScheme::kReport;
+    options.report_lod.first_range = 1e9;
+    EXPECT_EQ(draw(EngineKind::kFast, database, options).rgb, full.rgb);
+    options.report_lod.first_range = 1;
+    FrameStatistics statistics;
+    const Picture coarse = draw(EngineKind::kFast, database, options, statistics);
+    EXPECT_NE(coarse.rgb, full.rgb);
+    // Objects that a seam touches, and those alone.
+    EXPECT_GT(statistics.objects.faces[0], 0u);
+    EXPECT_GT(statistics.objects.faces[4], 0u);
+    EXPECT_EQ(statistics.objects.faces[1] + statistics.objects.faces[2] + statistics.objects.faces[3], 0u);
   }
 }
 
