@@ -27,6 +27,14 @@ double postCoordinate(const GridAxis& axis, const AxisOrigin& origin, std::int64
   return origin.coordinate + (static_cast<double>(global) + axis.phase) * axis.spacing;
 }
 
+double postLongitude(const GridAxis& axis, std::int64_t global_column) {
+  return postCoordinate(axis, kLongitudeOrigin, global_column);
+}
+double postLatitude(const GridAxis& axis, std::int64_t global_row) {
+  // A source may place its outermost row beyond the pole by a rounding error.
+  return std::clamp(postCoordinate(axis, kLatitudeOrigin, global_row), -90.0, 90.0);
+}
+
 namespace {
 
 PostRange rangeAt(const GridAxis& axis, int level) {
@@ -43,7 +51,10 @@ PostRange nodeRangeAt(const GridAxis& axis, int leaf_cells, int level) {
 }  // namespace
 
 GridGeometry::GridGeometry(const GridHeader& grid, std::shared_ptr<const PatchLattice> patches)
-    : grid_(grid), quantum_(grid.quantum.value()), patches_(std::move(patches)) {}
+    : grid_(grid),
+      quantum_(grid.quantum.value()),
+      patches_(std::move(patches)),
+      axes_(std::make_shared<const PostAxes>(grid)) {}
 
 double GridGeometry::xCoordinate(std::int64_t global_column) const {
   return postCoordinate(grid_.x_axis, isGeodetic() ? kLongitudeOrigin : kProjectedOrigin, global_column);
@@ -53,11 +64,10 @@ double GridGeometry::yCoordinate(std::int64_t global_row) const {
 }
 
 double GridGeometry::longitude(std::int64_t global_column) const {
-  return postCoordinate(grid_.x_axis, kLongitudeOrigin, global_column);
+  return postLongitude(grid_.x_axis, global_column);
 }
 double GridGeometry::latitude(std::int64_t global_row) const {
-  // A source may place its outermost row beyond the pole by a rounding error.
-  return std::clamp(postCoordinate(grid_.y_axis, kLatitudeOrigin, global_row), -90.0, 90.0);
+  return postLatitude(grid_.y_axis, global_row);
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "formats/node_file.h"
 #include "formats/patch_lattice.h"
 #include "libdb/access/earth.h"
+#include "libdb/access/post_axes.h"
 
 namespace deltaz {
 
@@ -23,6 +24,9 @@ struct PostRange {
 
 // Coordinate of post `global` (level 0) of an axis: degrees, or units of the projection.
 double postCoordinate(const GridAxis& axis, const AxisOrigin& origin, std::int64_t global);
+// Degrees, of an axis of a geodetic grid.
+double postLongitude(const GridAxis& axis, std::int64_t global_column);
+double postLatitude(const GridAxis& axis, std::int64_t global_row);
 
 // floor(a / b) and ceil(a / b) for b > 0.
 std::int64_t floorDivide(std::int64_t a, std::int64_t b);
@@ -42,6 +46,8 @@ class GridGeometry {
   const GridHeader& header() const { return grid_; }
   bool isGeodetic() const { return grid_.kind != "projected"; }
   const std::shared_ptr<const PatchLattice>& patches() const { return patches_; }
+  // Geodetic grids only. Copies of a geometry share them.
+  const PostAxes& axes() const { return *axes_; }
 
   // Coordinates of a level-0 post along its axis: degrees, or units of the projection.
   double xCoordinate(std::int64_t global_column) const;
@@ -77,6 +83,7 @@ class GridGeometry {
   GridHeader grid_;
   double quantum_;
   std::shared_ptr<const PatchLattice> patches_;
+  std::shared_ptr<const PostAxes> axes_;
 };
 
 }  // namespace deltaz

@@ -6,11 +6,61 @@
 
 #include "libdb/access/grid_geometry.h"
 
-namespace deltaz {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "libdb/access/patch_surface.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
+#ifndef DELTAZ_PATCH_POINTS
+#define DELTAZ_PATCH_POINTS
+namespace deltaz {
 namespace {
 
 constexpr std::size_t kPoints = kPatchDegree + 1;
+
+}  // namespace
+}  // namespace deltaz
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+// A run of posts between the same control points, in the order of `weighted` below. Whole vectors are
+// written.
+void weightedRun(const std::array<Vector3, kPoints>& points,
+                 const std::array<std::vector<double>, kPoints>& weights, std::size_t begin, std::size_t end,
+                 double* x, double* y, double* z) {
+  const hn::ScalableTag<double> d;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    const auto first = hn::LoadU(d, &weights[0][i]);
+    auto sum_x = hn::Mul(hn::Set(d, points[0].x), first);
+    auto sum_y = hn::Mul(hn::Set(d, points[0].y), first);
+    auto sum_z = hn::Mul(hn::Set(d, points[0].z), first);
+    for (std::size_t k = 1; k < kPoints; ++k) {
+      const auto weight = hn::LoadU(d, &weights[k][i]);
+      sum_x = hn::Add(sum_x, hn::Mul(hn::Set(d, points[k].x), weight));
+      sum_y = hn::Add(sum_y, hn::Mul(hn::Set(d, points[k].y), weight));
+      sum_z = hn::Add(sum_z, hn::Mul(hn::Set(d, points[k].z), weight));
+    }
+    hn::StoreU(sum_x, d, x + i);
+    hn::StoreU(sum_y, d, y + i);
+    hn::StoreU(sum_z, d, z + i);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace deltaz
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace deltaz {
+namespace {
+
+HWY_EXPORT(weightedRun);
 
 // Which control points an index is interpolated from, and with what weights.
 struct Weights {
@@ -93,4 +143,40 @@ std::vector<Vector3> patchPositions(const PatchLattice& lattice, std::int64_t fi
   return positions;
 }
 
+void patchPositions(const PatchLattice& lattice, std::int64_t first_column, std::int64_t columns,
+                    std::int64_t first_row, std::int64_t rows, std::int64_t step, VectorLists& positions) {
+  const PatchPlacement& placement = lattice.placement;
+  // Columns between the same control points follow each other.
+  struct Run {
+    std::int64_t first_point = 0;
+    std::size_t begin = 0, end = 0;
+  };
+  thread_local std::vector<Run> runs;
+  thread_local std::array<std::vector<double>, kPoints> weights;
+  const auto width = static_cast<std::size_t>(columns);
+  runs.clear();
+  for (std::vector<double>& list : weights) resizePadded(list, width);
+  for (std::size_t i = 0; i < width; ++i) {
+    const Weights x = weightsAt(first_column + static_cast<std::int64_t>(i) * step, placement.first_x,
+                                placement.columns, placement.cells);
+    for (std::size_t k = 0; k < kPoints; ++k) weights[k][i] = x.weight[k];
+    if (runs.empty() || runs.back().first_point != x.first_point) runs.push_back({x.first_point, i, i});
+    runs.back().end = i + 1;
+  }
+  const std::size_t count = width * static_cast<std::size_t>(rows);
+  positions.resize(count);
+  for (std::int64_t j = 0; j < rows; ++j) {
+    const Weights y = weightsAt(first_row + j * step, placement.first_y, placement.rows, placement.cells);
+    const std::size_t row = static_cast<std::size_t>(j) * width;
+    // A vector beyond a run's end is overwritten by the next run, the next row or the padding.
+    for (const Run& run : runs) {
+      HWY_DYNAMIC_DISPATCH(weightedRun)
+      (reduceRows(lattice, run.first_point, y), weights, run.begin, run.end, positions.x.data() + row,
+       positions.y.data() + row, positions.z.data() + row);
+    }
+  }
+  positions.resize(count);
+}
+
 }  // namespace deltaz
+#endif

@@ -12,6 +12,7 @@
 
 #include "formats/patch_lattice.h"
 #include "libdb/access/vector3.h"
+#include "libdb/access/vector_lists.h"
 
 namespace deltaz {
 
@@ -26,5 +27,8 @@ Vector3 patchPosition(const PatchLattice& lattice, std::int64_t column, std::int
 std::vector<Vector3> patchPositions(const PatchLattice& lattice, std::int64_t first_column,
                                     std::int64_t columns, std::int64_t first_row, std::int64_t rows,
                                     std::int64_t step);
+// The same, as lists; `positions` is overwritten.
+void patchPositions(const PatchLattice& lattice, std::int64_t first_column, std::int64_t columns,
+                    std::int64_t first_row, std::int64_t rows, std::int64_t step, VectorLists& positions);
 
 }  // namespace deltaz

@@ -3,6 +3,8 @@
 // Thread-safety: pure functions.
 #pragma once
 
+#include <cstddef>
+
 #include "libdb/access/color.h"
 #include "libdb/access/vector3.h"
 
@@ -21,6 +23,16 @@ struct SurfacePoint {
 
 // Reflectance, linear.
 LinearColor naturalColor(const SurfacePoint& point);
+
+// The same of `count` points, of as many at a time as the processor takes, with the same bits. Each list may
+// be read, and those of `colors` written, up to kVectorPadding entries beyond its last.
+struct SurfacePointLists {
+  const double *height = nullptr, *upness = nullptr, *poleward = nullptr, *snow_line = nullptr;
+};
+struct ColorLists {
+  double *red = nullptr, *green = nullptr, *blue = nullptr;
+};
+void naturalColors(const SurfacePointLists& points, std::size_t count, const ColorLists& colors);
 
 // The same country in winter: the snow line kWinterDrop lower, forest frosted above it, level water at 0 m
 // frozen where the snow comes down to it.

@@ -5,7 +5,7 @@
 //
 // Triangles with a void or missing post, or of no extent (pole rows), count nothing; a vertex left with none
 // gets the fallback. Equal on both sides of a tile border to the last bit, since only global indices and
-// heights enter. Thread-safety: pure functions.
+// heights enter, and on every processor. Thread-safety: pure functions.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/terrain_tile.h"
+#include "libdb/access/tile_posts.h"
 #include "libdb/access/vector3.h"
 
 namespace deltaz {
@@ -35,5 +36,7 @@ Vector3 table11Normal(const std::array<VertexNeighbour, 6>& neighbours, const Ve
 // Earth-centred unit normals of a tile's own posts, row by row (columns * rows of them), derived from the
 // tile's own level. Void posts get the ellipsoid normal.
 std::vector<Vector3> vertexNormals(const TerrainTile& tile, const GridGeometry& geometry);
+// The same as lists, of as many posts at a time as the processor takes; `normals` is overwritten.
+void vertexNormals(const TilePosts& posts, VectorLists& normals);
 
 }  // namespace deltaz

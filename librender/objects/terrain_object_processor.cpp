@@ -1,25 +1,10 @@
 #include "librender/objects/terrain_object_processor.h"
 
-#include <cmath>
-#include <numbers>
 #include <span>
-#include <utility>
 
-#include "libdb/access/synthetic_color.h"
-#include "libdb/access/vertex_normals.h"
-#include "librender/objects/view_positions.h"
+#include "librender/objects/terrain_vertex_lists.h"
 
 namespace deltaz {
-namespace {
-
-PostRange columnRange(const TerrainTile& tile) {
-  return {tile.first_column, tile.first_column + tile.columns};
-}
-PostRange rowRange(const TerrainTile& tile) {
-  return {tile.first_row, tile.first_row + tile.rows};
-}
-
-}  // namespace
 
 std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
                                       const ViewTransform& view) {
@@ -31,49 +16,42 @@ std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometr
   return position;
 }
 
+namespace {
+
+std::vector<LinearColor> gathered(const PostColors& colors, std::size_t count) {
+  std::vector<LinearColor> list;
+  list.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) list.push_back({colors.red[k], colors.green[k], colors.blue[k]});
+  return list;
+}
+
+}  // namespace
+
 TerrainShading terrainShading(const TerrainTile& tile, const GridGeometry& geometry, const Light& light) {
-  const std::vector<Vector3> normals = vertexNormals(tile, geometry);
-  const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
+  thread_local TerrainVertexLists lists;
+  terrainVertexLists(tile, geometry, {}, light, lists);
+  const std::size_t count = lists.position.count();
   TerrainShading shading;
-  shading.color.reserve(normals.size());
-  shading.intensity.reserve(normals.size());
-  SurfacePoint point;
-  for (int j = 0; j < tile.rows; ++j) {
-    for (int i = 0; i < tile.columns; ++i) {
-      const Vector3& normal = normals[shading.color.size()];
-      const Vector3& up = places[shading.color.size()].up;
-      const double across = std::hypot(up.x, up.y);
-      // On a geodetic grid a row has one latitude.
-      if (i == 0 || !geometry.isGeodetic()) {
-        const double latitude =
-            geometry.isGeodetic() ? geometry.latitude((tile.first_row + j) * (std::int64_t{1} << tile.level))
-                                  : std::atan2(up.z, across) * (180.0 / std::numbers::pi);
-        point.snow_line = snowLine(latitude);
-      }
-      // North, in the plane of the axis and the vertical.
-      const Vector3 north =
-          across > 0 ? Vector3{-up.z * up.x / across, -up.z * up.y / across, across} : Vector3{-up.z, 0, 0};
-      point.height = geometry.metres(tile.height(i, j));
-      point.upness = dot(normal, up);
-      point.poleward = (up.z < 0 ? -1 : 1) * dot(normal, north);
-      const double intensity = light.intensity(normal);
-      shading.intensity.push_back(intensity);
-      shading.color.push_back(naturalColor(point) * intensity);
-    }
-  }
+  shading.color = gathered(lists.color, count);
+  shading.intensity.assign(lists.intensity.begin(),
+                           lists.intensity.begin() + static_cast<std::ptrdiff_t>(count));
   return shading;
 }
 
 TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
                                 const ViewTransform& view, const Light& light) {
-  TerrainShading shading = terrainShading(tile, geometry, light);
+  thread_local TerrainVertexLists lists;
+  terrainVertexLists(tile, geometry, view, light, lists);
+  const std::size_t count = lists.position.count();
   TerrainVertices vertices;
   vertices.columns = tile.columns;
   vertices.rows = tile.rows;
-  vertices.position = terrainPositions(tile, geometry, view);
-  vertices.color = std::move(shading.color);
-  vertices.intensity = std::move(shading.intensity);
-  vertices.texture.reserve(vertices.position.size());
+  vertices.position.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) vertices.position.push_back(lists.position.at(k));
+  vertices.color = gathered(lists.color, count);
+  vertices.intensity.assign(lists.intensity.begin(),
+                            lists.intensity.begin() + static_cast<std::ptrdiff_t>(count));
+  vertices.texture.reserve(count);
   const std::int64_t step = std::int64_t{1} << tile.level;
   for (int j = 0; j < tile.rows; ++j) {
     const auto row = static_cast<double>((tile.first_row + j) * step);

@@ -1,7 +1,5 @@
 #include "librender/objects/view_positions.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
@@ -21,10 +19,9 @@ struct Axis {
 };
 
 // All of a tile that does not change from row to row.
-struct ColumnTerms {
+struct AxisTerms {
   std::vector<double> u, v, w;  // m.x cos(lon) + m.y sin(lon) of each axis, padded
   Axis axis_u, axis_v, axis_w;
-  double quantum = 1;
 };
 
 }  // namespace
@@ -35,22 +32,20 @@ HWY_BEFORE_NAMESPACE();
 namespace deltaz {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
-// The posts of one row. Whole vectors are written, up to ViewPositions::kPadding doubles from each pointer's
-// last post on. `heights` may be read that far, too.
-void geodeticRow(const RowConstants& row, const ColumnTerms& terms, const std::int32_t* heights, int columns,
+// The posts of one row. Whole vectors are written.
+void geodeticRow(const RowConstants& row, const AxisTerms& terms, const double* heights, int columns,
                  double* u, double* v, double* w) {
   const hn::ScalableTag<double> d;
-  const hn::Rebind<std::int32_t, decltype(d)> di;
-  static_assert(hn::MaxLanes(d) <= ViewPositions::kPadding);
-  const auto quantum = hn::Set(d, terms.quantum);
+  static_assert(hn::MaxLanes(d) <= kVectorPadding);
   const auto a = hn::Set(d, row.a), b = hn::Set(d, row.b), c = hn::Set(d, row.c), s = hn::Set(d, row.s);
   const auto along = [&](const Axis& axis, const double* column_term, auto distance, auto z) {
     return hn::Add(hn::Mul(distance, hn::LoadU(d, column_term)),
                    hn::Sub(hn::Mul(z, hn::Set(d, axis.m.z)), hn::Set(d, axis.t)));
   };
   for (int i = 0; i < columns; i += static_cast<int>(hn::Lanes(d))) {
-    const auto height = hn::Mul(hn::PromoteTo(d, hn::LoadU(di, heights + i)), quantum);
+    const auto height = hn::LoadU(d, heights + i);
     const auto distance = hn::Add(a, hn::Mul(b, height));
     const auto z = hn::Add(c, hn::Mul(s, height));
     hn::StoreU(along(terms.axis_u, terms.u.data() + i, distance, z), d, u + i);
@@ -59,6 +54,27 @@ void geodeticRow(const RowConstants& row, const ColumnTerms& terms, const std::i
   }
 }
 
+// ViewTransform::toView of `columns` posts. Whole vectors are written.
+void projectedRow(const ViewTransform& view, const VectorLists& places, std::size_t first, int columns,
+                  double* u, double* v, double* w) {
+  const hn::ScalableTag<double> d;
+  const auto pixels = hn::Set(d, view.pixels);
+  for (int i = 0; i < columns; i += static_cast<int>(hn::Lanes(d))) {
+    const std::size_t k = first + static_cast<std::size_t>(i);
+    const auto x = hn::Sub(hn::LoadU(d, &places.x[k]), hn::Set(d, view.eye.x));
+    const auto y = hn::Sub(hn::LoadU(d, &places.y[k]), hn::Set(d, view.eye.y));
+    const auto z = hn::Sub(hn::LoadU(d, &places.z[k]), hn::Set(d, view.eye.z));
+    const auto along = [&](const Vector3& m) {
+      return hn::Add(hn::Add(hn::Mul(hn::Set(d, m.x), x), hn::Mul(hn::Set(d, m.y), y)),
+                     hn::Mul(hn::Set(d, m.z), z));
+    };
+    hn::StoreU(along(view.forward), d, u + i);
+    hn::StoreU(hn::Mul(along(view.right), pixels), d, v + i);
+    hn::StoreU(hn::Mul(along(view.down), pixels), d, w + i);
+  }
+}
+
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace deltaz
 HWY_AFTER_NAMESPACE();
@@ -68,91 +84,64 @@ namespace deltaz {
 namespace {
 
 HWY_EXPORT(geodeticRow);
-
-PostRange columnRange(const TerrainTile& tile) {
-  return {tile.first_column, tile.first_column + tile.columns};
-}
-PostRange rowRange(const TerrainTile& tile) {
-  return {tile.first_row, tile.first_row + tile.rows};
-}
+HWY_EXPORT(projectedRow);
 
 Axis axisOf(const Vector3& vector, const Vector3& eye) {
   return {vector, dot(vector, eye)};
 }
 
-void geodeticPositions(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
-                       ViewPositions& positions) {
-  const std::vector<RowConstants> rows = geometry.rowConstantsOf(tile.level, rowRange(tile));
-  const std::vector<ColumnConstants> columns = geometry.columnConstantsOf(tile.level, columnRange(tile));
-  thread_local ColumnTerms terms;
+// Of the tile's own columns.
+void fillTerms(const TilePosts& posts, const ViewTransform& view, AxisTerms& terms) {
   terms.axis_u = axisOf(view.forward, view.eye);
   terms.axis_v = axisOf(view.right * view.pixels, view.eye);
   terms.axis_w = axisOf(view.down * view.pixels, view.eye);
-  terms.quantum = geometry.metres(1);
-  for (std::vector<double>* list : {&terms.u, &terms.v, &terms.w})
-    list->assign(columns.size() + ViewPositions::kPadding, 0);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto term = [&](const Axis& axis) {
-      return axis.m.x * columns[i].cosine + axis.m.y * columns[i].sine;
-    };
-    terms.u[i] = term(terms.axis_u);
-    terms.v[i] = term(terms.axis_v);
-    terms.w[i] = term(terms.axis_w);
-  }
-  // The last rows' heights are copied to where there is room to read beyond them.
-  thread_local std::vector<std::int32_t> last_heights;
-  for (int j = 0; j < tile.rows; ++j) {
-    const std::int32_t* heights = tile.heights.data() + tile.index(0, j);
-    if (tile.index(tile.columns, j) + ViewPositions::kPadding > tile.heights.size()) {
-      last_heights.assign(heights, heights + tile.columns);
-      last_heights.resize(last_heights.size() + ViewPositions::kPadding);
-      heights = last_heights.data();
-    }
-    const std::size_t post = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns);
-    HWY_DYNAMIC_DISPATCH(geodeticRow)
-    (rows[static_cast<std::size_t>(j)], terms, heights, tile.columns, positions.u.data() + post,
-     positions.v.data() + post, positions.w.data() + post);
-  }
-}
-
-// Posts of a projected grid do not separate into rows and columns.
-void projectedPositions(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
-                        ViewPositions& positions) {
-  const std::vector<PostPlace> places = geometry.postPlaces(tile.level, columnRange(tile), rowRange(tile));
-  std::size_t post = 0;
-  for (int j = 0; j < tile.rows; ++j) {
-    for (int i = 0; i < tile.columns; ++i, ++post) {
-      const Vector3 position = view.toView(places[post].at(geometry.metres(tile.height(i, j))));
-      positions.u[post] = position.x;
-      positions.v[post] = position.y;
-      positions.w[post] = position.z;
-    }
+  const auto columns = static_cast<std::size_t>(posts.tile().columns);
+  for (std::vector<double>* list : {&terms.u, &terms.v, &terms.w}) resizePadded(*list, columns);
+  for (std::size_t i = 0; i < columns; ++i) {
+    const double cosine = posts.columns().cosine[i + 1], sine = posts.columns().sine[i + 1];
+    terms.u[i] = terms.axis_u.m.x * cosine + terms.axis_u.m.y * sine;
+    terms.v[i] = terms.axis_v.m.x * cosine + terms.axis_v.m.y * sine;
+    terms.w[i] = terms.axis_w.m.x * cosine + terms.axis_w.m.y * sine;
   }
 }
 
 }  // namespace
 
 void ViewPositions::resize(std::size_t posts) {
-  for (std::vector<double>* list : {&u, &v, &w}) {
-    list->resize(posts + kPadding);
-    std::fill(list->begin() + static_cast<std::ptrdiff_t>(posts), list->end(), 0.0);
+  for (std::vector<double>* list : {&u, &v, &w}) resizePadded(*list, posts);
+}
+
+void terrainViewPositions(const TilePosts& posts, const ViewTransform& view, ViewPositions& positions) {
+  const TerrainTile& tile = posts.tile();
+  const std::size_t count = static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
+  positions.resize(count);
+  thread_local AxisTerms terms;
+  if (posts.isGeodetic()) fillTerms(posts, view, terms);
+  for (int j = 0; j < tile.rows; ++j) {
+    const std::size_t post = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns);
+    double *const u = &positions.u[post], *const v = &positions.v[post], *const w = &positions.w[post];
+    if (posts.isGeodetic()) {
+      HWY_DYNAMIC_DISPATCH(geodeticRow)
+      (posts.rows()[static_cast<std::size_t>(j) + 1].at, terms, &posts.heights()[tile.index(0, j)],
+       tile.columns, u, v, w);
+    } else {
+      HWY_DYNAMIC_DISPATCH(projectedRow)
+      (view, posts.positions(), tile.index(0, j), tile.columns, u, v, w);
+    }
   }
+  // Whole vectors were written.
+  positions.resize(count);
 }
 
 void terrainViewPositions(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
                           ViewPositions& positions) {
-  const std::size_t posts = tile.columns < 1 || tile.rows < 1 ? 0
-                                                              : static_cast<std::size_t>(tile.columns) *
-                                                                    static_cast<std::size_t>(tile.rows);
-  positions.resize(posts);
-  if (posts == 0) return;
-  if (geometry.isGeodetic()) {
-    geodeticPositions(tile, geometry, view, positions);
-  } else {
-    projectedPositions(tile, geometry, view, positions);
+  if (tile.columns < 1 || tile.rows < 1) {
+    positions.resize(0);
+    return;
   }
-  // Whole vectors were written.
-  positions.resize(posts);
+  thread_local TilePosts posts;
+  posts.prepare(tile, geometry);
+  terrainViewPositions(posts, view, positions);
 }
 
 }  // namespace deltaz

@@ -11,6 +11,7 @@
 
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/terrain_tile.h"
+#include "libdb/access/tile_posts.h"
 #include "libdb/access/vector3.h"
 #include "librender/scene/camera.h"
 
@@ -19,7 +20,7 @@ namespace deltaz {
 // Posts row by row from the south-west, one entry a post, then kPadding zeroes, so that a vector of up to
 // that many doubles may be loaded from any post on.
 struct ViewPositions {
-  static constexpr std::size_t kPadding = 8;
+  static constexpr std::size_t kPadding = kVectorPadding;
 
   std::vector<double> u, v, w;  // metres along the view axis; V and W in pixels per unit of tangent
 
@@ -31,7 +32,8 @@ struct ViewPositions {
 };
 
 // `positions` is overwritten. What stands at a void post is not used by any face. Cost: about a nanosecond a
-// post of a geodetic grid, and the sines and cosines of a tile's rows and columns.
+// post of a geodetic grid, a few of a projected one.
+void terrainViewPositions(const TilePosts& posts, const ViewTransform& view, ViewPositions& positions);
 void terrainViewPositions(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
                           ViewPositions& positions);
 

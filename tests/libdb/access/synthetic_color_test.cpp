@@ -2,6 +2,11 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "libdb/access/vector_lists.h"
+#include "tests/support/every_simd_target.h"
 
 namespace deltaz {
 namespace {
@@ -67,6 +72,34 @@ TEST(SyntheticColor, winter_has_no_steps) {
       EXPECT_NEAR(winterColor(low).green, winterColor(high).green, 0.01) << height << " " << upness;
     }
   }
+}
+
+TEST(SyntheticColor, lists_have_the_bits_of_single_points_on_every_instruction_set) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967295.0);
+  };
+  constexpr std::size_t kMost = 5000;
+  std::vector<double> height(kMost + kVectorPadding), upness(height), poleward(height), snow_line(height);
+  for (std::size_t k = 0; k < kMost; ++k) {
+    height[k] = random() % 8 == 0 ? between(-3, 3) : between(-400, 8800);
+    upness[k] = random() % 4 == 0 ? between(0.9998, 1) : between(0, 1);
+    poleward[k] = between(-1, 1);
+    snow_line[k] = random() % 16 == 0 ? 0 : snowLine(between(-90, 90));
+  }
+  onEverySimdTarget([&] {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{17}, kMost}) {
+      std::vector<double> red(count + kVectorPadding), green(red), blue(red);
+      naturalColors({height.data(), upness.data(), poleward.data(), snow_line.data()}, count,
+                    {red.data(), green.data(), blue.data()});
+      std::size_t different = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const LinearColor expected = naturalColor({height[k], upness[k], poleward[k], snow_line[k]});
+        different += red[k] == expected.red && green[k] == expected.green && blue[k] == expected.blue ? 0 : 1;
+      }
+      EXPECT_EQ(different, 0U) << count;
+    }
+  });
 }
 
 }  // namespace

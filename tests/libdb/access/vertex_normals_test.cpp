@@ -1,6 +1,8 @@
 #include "libdb/access/vertex_normals.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <gtest/gtest.h>
 #include <map>
@@ -8,6 +10,8 @@
 #include <tuple>
 
 #include "libdb/build/pyramid.h"
+#include "tests/stress/stress_grids.h"
+#include "tests/support/every_simd_target.h"
 #include "tests/support/synthetic_grid.h"
 
 namespace deltaz {
@@ -216,6 +220,92 @@ TEST_P(VertexNormalsAt, are_the_same_bits_on_both_sides_of_every_border) {
     }
   }
   EXPECT_GT(shared, 100u);
+}
+
+// From post (i, j) to post (i + di, j + dj) of a geodetic grid: products of constants and heights change by
+// the constant's change times one height plus the height's times the other.
+Vector3 offsetBetween(const TerrainTile& tile, const GridGeometry& geometry, int i, int j, int di, int dj) {
+  const std::int64_t step = std::int64_t{1} << tile.level;
+  const auto latitude = [&](int row) { return geometry.latitude((tile.first_row + row) * step); };
+  const auto longitude = [&](int column) { return geometry.longitude((tile.first_column + column) * step); };
+  const EllipsoidShape& ellipsoid = geometry.header().ellipsoid;
+  const RowConstants from = rowConstants(ellipsoid, latitude(j)),
+                     to = rowConstants(ellipsoid, latitude(j + dj));
+  const ColumnConstants to_column = columnConstants(longitude(i + di));
+  const RowStep r =
+      dj == 0 ? RowStep{} : rowStep(ellipsoid, latitude(dj > 0 ? j : j - 1), latitude(dj > 0 ? j + 1 : j));
+  const ColumnStep c =
+      di == 0 ? ColumnStep{} : columnStep(longitude(di > 0 ? i : i - 1), longitude(di > 0 ? i + 1 : i));
+  const double height = geometry.metres(tile.height(i, j));
+  const double rise = geometry.metres(tile.height(i + di, j + dj)) - height;
+  const double distance = from.a + from.b * height;
+  const double distance_step = dj * (r.a + r.b * height) + to.b * rise;
+  return {distance_step * to_column.cosine + distance * di * c.cosine,
+          distance_step * to_column.sine + distance * di * c.sine, dj * (r.c + r.s * height) + to.s * rise};
+}
+
+Vector3 normalByDefinition(const TerrainTile& tile, const GridGeometry& geometry, int i, int j) {
+  const std::int64_t step = std::int64_t{1} << tile.level;
+  const auto place = [&](int at_i, int at_j) {
+    return geometry.placeAt((tile.first_column + at_i) * step, (tile.first_row + at_j) * step);
+  };
+  const Vector3 up = place(i, j).up;
+  if (!tile.isValid(i, j)) return up;
+  std::array<VertexNeighbour, 6> neighbours;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto [di, dj] = kSteps[k];
+    const Vector3 offset = geometry.isGeodetic()
+                               ? offsetBetween(tile, geometry, i, j, di, dj)
+                               : place(i + di, j + dj).at(geometry.metres(tile.height(i + di, j + dj))) -
+                                     place(i, j).at(geometry.metres(tile.height(i, j)));
+    neighbours[k] = {offset, tile.isValid(i + di, j + dj)};
+  }
+  return table11Normal(neighbours, up);
+}
+
+void expectDefinition(const TerrainTile& tile, const GridGeometry& geometry) {
+  std::vector<Vector3> expected;
+  for (int j = 0; j < tile.rows; ++j) {
+    for (int i = 0; i < tile.columns; ++i) expected.push_back(normalByDefinition(tile, geometry, i, j));
+  }
+  onEverySimdTarget([&] {
+    const std::vector<Vector3> normals = vertexNormals(tile, geometry);
+    ASSERT_EQ(normals.size(), expected.size());
+    std::size_t different = 0;
+    const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+    for (std::size_t k = 0; k < normals.size(); ++k)
+      different += bits(normals[k].x) == bits(expected[k].x) && bits(normals[k].y) == bits(expected[k].y) &&
+                           bits(normals[k].z) == bits(expected[k].z)
+                       ? 0
+                       : 1;
+    EXPECT_EQ(different, 0U) << tile.columns << " x " << tile.rows;
+  });
+}
+
+TEST(VertexNormals, have_the_definitions_bits_on_every_instruction_set) {
+  for (const NamedGrid& named : extremeGrids()) {
+    SCOPED_TRACE(named.name);
+    expectDefinition(wholeTile(named.grid), GridGeometry(named.grid.header, named.grid.patches));
+  }
+  const RawGrid projected = projectedGrid(90, 40, 25);
+  expectDefinition(wholeTile(projected), GridGeometry(projected.header, projected.patches));
+}
+
+TEST(VertexNormals, of_tiles_of_any_width_and_with_voids_have_the_definitions_bits) {
+  for (int columns = 1; columns <= 19; ++columns) {
+    for (const VoidPattern voids : {VoidPattern::kNone, VoidPattern::kScattered}) {
+      SyntheticGridOptions options;
+      options.columns = columns;
+      options.rows = 5;
+      options.voids = voids;
+      const RawGrid grid = syntheticGrid(options);
+      TerrainTile tile = wholeTile(grid);
+      expectDefinition(tile, GridGeometry(grid.header));
+      // A ring that is there: no validity is asked for.
+      if (voids == VoidPattern::kNone) tile.valid.assign(tile.valid.size(), 1);
+      expectDefinition(tile, GridGeometry(grid.header));
+    }
+  }
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
-#include "libdb/access/simd_target.h"
 #include "tests/stress/stress_grids.h"
+#include "tests/support/every_simd_target.h"
 
 namespace deltaz {
 namespace {
@@ -45,8 +45,7 @@ bool sameBits(const Vector3& a, const Vector3& b) {
 
 void expectDefinition(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view) {
   ViewPositions positions;
-  for (const SimdTarget target : simdTargets()) {
-    ASSERT_TRUE(limitSimdTarget(target));
+  onEverySimdTarget([&] {
     terrainViewPositions(tile, geometry, view, positions);
     ASSERT_EQ(positions.count(),
               static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows));
@@ -55,12 +54,11 @@ void expectDefinition(const TerrainTile& tile, const GridGeometry& geometry, con
       for (int i = 0; i < tile.columns; ++i, ++post)
         different += sameBits(positions.at(post), definition(tile, geometry, view, i, j)) ? 0 : 1;
     }
-    EXPECT_EQ(different, 0U) << simdTargetName(target) << " " << tile.columns << " x " << tile.rows;
+    EXPECT_EQ(different, 0U) << tile.columns << " x " << tile.rows;
     for (const std::vector<double>* list : {&positions.u, &positions.v, &positions.w}) {
       for (std::size_t k = 0; k < ViewPositions::kPadding; ++k) EXPECT_EQ((*list)[post + k], 0);
     }
-  }
-  limitSimdTarget(std::nullopt);
+  });
 }
 
 TEST(ViewPositions, every_instruction_set_gives_the_definitions_bits) {
