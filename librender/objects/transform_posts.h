@@ -11,10 +11,12 @@
 //
 // delta and matrix leave out the curvature of the Earth inside a tile (transform_planar.h). How far off each
 // may be is proved by transform_error_bound.h. Both kinds of grid are served. All deliver doubles, so that
-// one can take the other's place. Thread-safety: const members from any thread.
+// one can take the other's place, with the same bits on every processor. Thread-safety: const members from
+// any thread.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,7 @@
 #include "libdb/access/grid_geometry.h"
 #include "libdb/access/terrain_tile.h"
 #include "librender/objects/transform_planar.h"
+#include "librender/objects/view_positions.h"
 #include "librender/scene/camera.h"
 
 namespace deltaz {
@@ -45,6 +48,12 @@ class TileTransform {
   // (U, V, W) of every post, row by row, tile.columns * tile.rows of them; `out` is overwritten. What stands
   // at a void post is not used by any face.
   void apply(const ViewTransform& view, std::vector<Vector3>& out) const;
+  // The same as lists, of as many posts at a time as the processor takes. Delta summation is serial along a
+  // row, so there a lane is a row.
+  void apply(const ViewTransform& view, ViewPositions& out) const;
+
+  // What is kept from frame to frame, besides the tile.
+  std::size_t storedBytes() const;
 
  private:
   TileTransform(TransformKind kind, const TerrainTile& tile, const GridGeometry& geometry)
@@ -52,17 +61,18 @@ class TileTransform {
   void prepareDeltas();
   void prepareHeights();
   void prepareOffsets();
-  void applyDelta(const ViewTransform& view, std::vector<Vector3>& out) const;
-  void applyMatrix(const ViewTransform& view, std::vector<Vector3>& out) const;
-  void applyLocal(const ViewTransform& view, std::vector<Vector3>& out) const;
+  void applyDelta(const ViewTransform& view, ViewPositions& out) const;
+  void applyMatrix(const ViewTransform& view, ViewPositions& out) const;
+  void applyLocal(const ViewTransform& view, ViewPositions& out) const;
 
   TransformKind kind_;
   const TerrainTile* tile_;
   const GridGeometry* geometry_;
   PlanarGrid planar_;
-  // delta: delta-z in metres, post (0, 0) above the base; matrix: height above the base in metres.
+  // delta: delta-z in metres, post (0, 0) above the base, column by column; matrix: height above the base in
+  // metres, row by row.
   std::vector<float> heights_;
-  std::vector<std::array<float, 3>> offsets_;  // local: Earth-centred metres from planar_.origin
+  std::array<std::vector<float>, 3> offsets_;  // local: Earth-centred x, y, z in metres from planar_.origin
 };
 
 // TileTransform::make and apply in one.

@@ -1,14 +1,18 @@
 // The four transforms against positions in extended precision, and their proved bounds.
 #include "librender/objects/transform_posts.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/objects/transform_error_bound.h"
+#include "tests/stress/scalar_transforms.h"
 #include "tests/stress/stress_grids.h"
 #include "tests/stress/true_positions.h"
+#include "tests/support/every_simd_target.h"
 
 namespace deltaz {
 namespace {
@@ -63,6 +67,73 @@ TEST(TransformPosts, no_transform_is_farther_off_than_its_bound) {
     std::printf("%s: at most %.3f of its bound\n", std::string(transformName(kind)).c_str(), closest);
     EXPECT_GT(closest, 0.02) << "a bound so far off says nothing";
   }
+}
+
+void expectDefinition(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view) {
+  for (const TransformKind kind : kTransformKinds) {
+    std::vector<Vector3> expected;
+    ScalarTransform(kind, tile, geometry).apply(view, expected);
+    onEverySimdTarget([&] {
+      const Result<TileTransform> transform = TileTransform::make(kind, tile, geometry);
+      ASSERT_TRUE(transform.ok());
+      ViewPositions positions;
+      transform.value().apply(view, positions);
+      ASSERT_EQ(positions.count(), expected.size());
+      std::size_t different = 0;
+      const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+      for (std::size_t k = 0; k < expected.size(); ++k)
+        different += bits(positions.u[k]) == bits(expected[k].x) &&
+                             bits(positions.v[k]) == bits(expected[k].y) &&
+                             bits(positions.w[k]) == bits(expected[k].z)
+                         ? 0
+                         : 1;
+      EXPECT_EQ(different, 0U) << transformName(kind) << " " << tile.columns << " x " << tile.rows;
+      for (std::size_t k = 0; k < ViewPositions::kPadding; ++k)
+        EXPECT_EQ(positions.u[expected.size() + k], 0);
+    });
+  }
+}
+
+TEST(TransformPosts, every_instruction_set_gives_the_definitions_bits) {
+  for (const NamedGrid& named : extremeGrids()) {
+    SCOPED_TRACE(named.name);
+    const GridGeometry geometry(named.grid.header, named.grid.patches);
+    const GeodeticPoint corner =
+        geometry.geodeticAt(named.grid.header.x_axis.first, named.grid.header.y_axis.first);
+    expectDefinition(
+        wholeTile(named.grid), geometry,
+        makeViewTransform(cameraAt(corner.latitude, corner.longitude, 900), named.grid.header.ellipsoid));
+  }
+  const RawGrid projected = projectedGrid(100, 70, 30);
+  expectDefinition(wholeTile(projected), GridGeometry(projected.header, projected.patches),
+                   makeViewTransform(cameraAt(46.01, 7.01, 3000), projected.header.ellipsoid));
+}
+
+TEST(TransformPosts, tiles_of_any_size_keep_the_definitions_bits) {
+  for (int columns = 1; columns <= 19; ++columns) {
+    for (int rows = 1; rows <= 19; rows += columns == 5 ? 1 : 6) {
+      SyntheticGridOptions options;
+      options.columns = columns;
+      options.rows = rows;
+      const RawGrid grid = syntheticGrid(options);
+      expectDefinition(wholeTile(grid), GridGeometry(grid.header),
+                       makeViewTransform(cameraAt(43.1, -79.6, 2000), grid.header.ellipsoid));
+    }
+  }
+}
+
+TEST(TransformPosts, what_is_kept_is_as_small_as_the_header_says) {
+  const RawGrid grid = syntheticGrid({});
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  const auto bytes = [&](TransformKind kind) {
+    const std::size_t stored = TileTransform::make(kind, tile, geometry).value().storedBytes();
+    return static_cast<double>(stored) / (121.0 * 121.0);
+  };
+  EXPECT_EQ(bytes(TransformKind::kExact), 0);
+  EXPECT_NEAR(bytes(TransformKind::kDelta), 4, 0.5);
+  EXPECT_NEAR(bytes(TransformKind::kMatrix), 4, 0.1);
+  EXPECT_NEAR(bytes(TransformKind::kLocal), 12, 0.1);
 }
 
 TEST(TransformPosts, exact_is_the_object_processor) {
