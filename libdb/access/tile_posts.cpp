@@ -70,9 +70,8 @@ void TilePosts::prepare(const TerrainTile& tile, const GridGeometry& geometry) {
   HWY_DYNAMIC_DISPATCH(heightsInMetres)(tile.heights, geometry.metres(1), heights_.data());
   valid_.clear();
   if (std::find(tile.valid.begin(), tile.valid.end(), std::uint8_t{0}) != tile.valid.end()) {
-    valid_.reserve(posts + kVectorPadding);
-    for (const std::uint8_t valid : tile.valid) valid_.push_back(valid != 0 ? 1 : 0);
     resizePadded(valid_, posts);
+    for (std::size_t k = 0; k < posts; ++k) valid_[k] = tile.valid[k] != 0 ? 1 : 0;
   }
   const PostRange columns{tile.first_column - 1, tile.first_column + tile.columns + 1};
   const PostRange rows{tile.first_row - 1, tile.first_row + tile.rows + 1};

@@ -22,6 +22,7 @@ struct Axis {
 struct AxisTerms {
   std::vector<double> u, v, w;  // m.x cos(lon) + m.y sin(lon) of each axis, padded
   Axis axis_u, axis_v, axis_w;
+  double quantum = 1;
 };
 
 }  // namespace
@@ -34,10 +35,12 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-// The posts of one row. Whole vectors are written.
-void geodeticRow(const RowConstants& row, const AxisTerms& terms, const double* heights, int columns,
+// The posts of one row. Whole vectors are read and written.
+void geodeticRow(const RowConstants& row, const AxisTerms& terms, const std::int32_t* heights, int columns,
                  double* u, double* v, double* w) {
   const hn::ScalableTag<double> d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const auto quantum = hn::Set(d, terms.quantum);
   static_assert(hn::MaxLanes(d) <= kVectorPadding);
   const auto a = hn::Set(d, row.a), b = hn::Set(d, row.b), c = hn::Set(d, row.c), s = hn::Set(d, row.s);
   const auto along = [&](const Axis& axis, const double* column_term, auto distance, auto z) {
@@ -45,7 +48,7 @@ void geodeticRow(const RowConstants& row, const AxisTerms& terms, const double* 
                    hn::Sub(hn::Mul(z, hn::Set(d, axis.m.z)), hn::Set(d, axis.t)));
   };
   for (int i = 0; i < columns; i += static_cast<int>(hn::Lanes(d))) {
-    const auto height = hn::LoadU(d, heights + i);
+    const auto height = hn::Mul(hn::PromoteTo(d, hn::LoadU(di, heights + i)), quantum);
     const auto distance = hn::Add(a, hn::Mul(b, height));
     const auto z = hn::Add(c, hn::Mul(s, height));
     hn::StoreU(along(terms.axis_u, terms.u.data() + i, distance, z), d, u + i);
@@ -90,19 +93,51 @@ Axis axisOf(const Vector3& vector, const Vector3& eye) {
   return {vector, dot(vector, eye)};
 }
 
-// Of the tile's own columns.
-void fillTerms(const TilePosts& posts, const ViewTransform& view, AxisTerms& terms) {
+// Of the tile's own columns; `columns` begin with the ring's.
+void fillTerms(const TerrainTile& tile, const ColumnTerms& columns, const ViewTransform& view,
+               AxisTerms& terms) {
   terms.axis_u = axisOf(view.forward, view.eye);
   terms.axis_v = axisOf(view.right * view.pixels, view.eye);
   terms.axis_w = axisOf(view.down * view.pixels, view.eye);
-  const auto columns = static_cast<std::size_t>(posts.tile().columns);
-  for (std::vector<double>* list : {&terms.u, &terms.v, &terms.w}) resizePadded(*list, columns);
-  for (std::size_t i = 0; i < columns; ++i) {
-    const double cosine = posts.columns().cosine[i + 1], sine = posts.columns().sine[i + 1];
+  const auto count = static_cast<std::size_t>(tile.columns);
+  for (std::vector<double>* list : {&terms.u, &terms.v, &terms.w}) resizePadded(*list, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double cosine = columns.cosine[i + 1], sine = columns.sine[i + 1];
     terms.u[i] = terms.axis_u.m.x * cosine + terms.axis_u.m.y * sine;
     terms.v[i] = terms.axis_v.m.x * cosine + terms.axis_v.m.y * sine;
     terms.w[i] = terms.axis_w.m.x * cosine + terms.axis_w.m.y * sine;
   }
+}
+
+std::size_t postCount(const TerrainTile& tile) {
+  return tile.columns < 1 || tile.rows < 1
+             ? 0
+             : static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
+}
+
+// `rows` and `columns` begin with the ring's.
+void geodeticPositions(const TerrainTile& tile, const std::vector<RowTerms>& rows, const ColumnTerms& columns,
+                       double quantum, const ViewTransform& view, ViewPositions& positions) {
+  positions.resize(postCount(tile));
+  thread_local AxisTerms terms;
+  fillTerms(tile, columns, view, terms);
+  terms.quantum = quantum;
+  // The last rows' heights are copied to where there is room to read beyond them.
+  thread_local std::vector<std::int32_t> last_heights;
+  for (int j = 0; j < tile.rows; ++j) {
+    const std::int32_t* heights = tile.heights.data() + tile.index(0, j);
+    if (tile.index(tile.columns, j) + kVectorPadding > tile.heights.size()) {
+      last_heights.assign(heights, heights + tile.columns);
+      last_heights.resize(last_heights.size() + kVectorPadding);
+      heights = last_heights.data();
+    }
+    const std::size_t post = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns);
+    HWY_DYNAMIC_DISPATCH(geodeticRow)
+    (rows[static_cast<std::size_t>(j) + 1].at, terms, heights, tile.columns, &positions.u[post],
+     &positions.v[post], &positions.w[post]);
+  }
+  // Whole vectors were written.
+  positions.resize(postCount(tile));
 }
 
 }  // namespace
@@ -113,31 +148,30 @@ void ViewPositions::resize(std::size_t posts) {
 
 void terrainViewPositions(const TilePosts& posts, const ViewTransform& view, ViewPositions& positions) {
   const TerrainTile& tile = posts.tile();
-  const std::size_t count = static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
-  positions.resize(count);
-  thread_local AxisTerms terms;
-  if (posts.isGeodetic()) fillTerms(posts, view, terms);
+  if (posts.isGeodetic())
+    return geodeticPositions(tile, posts.rows(), posts.columns(), posts.geometry().metres(1), view,
+                             positions);
+  positions.resize(postCount(tile));
   for (int j = 0; j < tile.rows; ++j) {
     const std::size_t post = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns);
-    double *const u = &positions.u[post], *const v = &positions.v[post], *const w = &positions.w[post];
-    if (posts.isGeodetic()) {
-      HWY_DYNAMIC_DISPATCH(geodeticRow)
-      (posts.rows()[static_cast<std::size_t>(j) + 1].at, terms, &posts.heights()[tile.index(0, j)],
-       tile.columns, u, v, w);
-    } else {
-      HWY_DYNAMIC_DISPATCH(projectedRow)
-      (view, posts.positions(), tile.index(0, j), tile.columns, u, v, w);
-    }
+    HWY_DYNAMIC_DISPATCH(projectedRow)
+    (view, posts.positions(), tile.index(0, j), tile.columns, &positions.u[post], &positions.v[post],
+     &positions.w[post]);
   }
   // Whole vectors were written.
-  positions.resize(count);
+  positions.resize(postCount(tile));
 }
 
 void terrainViewPositions(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
                           ViewPositions& positions) {
-  if (tile.columns < 1 || tile.rows < 1) {
-    positions.resize(0);
-    return;
+  if (postCount(tile) == 0) return positions.resize(0);
+  if (geometry.isGeodetic()) {
+    thread_local std::vector<RowTerms> rows;
+    thread_local ColumnTerms columns;
+    geometry.axes().rows(tile.level, {tile.first_row - 1, tile.first_row + tile.rows + 1}, rows);
+    geometry.axes().columns(tile.level, {tile.first_column - 1, tile.first_column + tile.columns + 1},
+                            columns);
+    return geodeticPositions(tile, rows, columns, geometry.metres(1), view, positions);
   }
   thread_local TilePosts posts;
   posts.prepare(tile, geometry);

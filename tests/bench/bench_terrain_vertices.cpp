@@ -1,9 +1,10 @@
 // What the terrain object processor costs, stage by stage.
 //   bench_terrain_vertices [--smoke]
-// For a node of 65 x 65 posts of a geodetic and of a projected grid it prints nanoseconds a post of the
-// positions, the normals, the shading (normals included) and all that a vertex needs, on every instruction
-// set of this processor. Times: stages take turns; of each round the median of several batches counts, and of
-// all rounds the least.
+// For a node of 65 x 65 posts of a geodetic and of a projected grid it prints nanoseconds a post on every
+// instruction set of this processor: positions post by post as they are defined, positions in vectors, then
+// what normals and shading start from (TilePosts), normals, intensity, colours by rule, all of these together
+// as lists, and the same gathered into TerrainVertices. Times: stages take turns; of each round the median of
+// several batches counts, and of all rounds the least.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -16,7 +17,8 @@
 #include "libdb/access/simd_target.h"
 #include "libdb/access/vertex_normals.h"
 #include "librender/objects/terrain_object_processor.h"
-#include "librender/objects/view_positions.h"
+#include "librender/objects/terrain_vertex_lists.h"
+#include "tests/stress/scalar_transforms.h"
 #include "tests/stress/stress_grids.h"
 
 namespace deltaz {
@@ -61,20 +63,31 @@ void printTable(const Settings& settings, const std::string& name, const RawGrid
   Light light;
   light.to_sun = view.forward * -1;
   ViewPositions positions;
+  TilePosts posts;
+  VectorLists normals;
+  std::vector<double> intensity;
+  PostColors colors;
+  TerrainVertexLists lists;
+  std::vector<Vector3> scalar_positions;
+  const ScalarTransform scalar(TransformKind::kExact, tile, geometry);
   const std::vector<Stage> stages = {
+      {"scalar pos", [&] { scalar.apply(view, scalar_positions); }},
       {"positions", [&] { terrainViewPositions(tile, geometry, view, positions); }},
-      {"normals", [&] { vertexNormals(tile, geometry); }},
-      {"shading", [&] { terrainShading(tile, geometry, light); }},
-      {"vertices", [&] { terrainVertices(tile, geometry, view, light); }}};
+      {"prepare", [&] { posts.prepare(tile, geometry); }},
+      {"normals", [&] { vertexNormals(posts, normals); }},
+      {"light", [&] { terrainIntensity(normals, light, intensity); }},
+      {"colours", [&] { terrainColors(posts, normals, intensity, colors); }},
+      {"lists", [&] { terrainVertexLists(tile, geometry, view, light, lists); }},
+      {"gathered", [&] { terrainVertices(tile, geometry, view, light); }}};
   const std::vector<SimdTarget> targets = simdTargets();
   std::vector<std::vector<double>> times(
       targets.size(), std::vector<double>(stages.size(), std::numeric_limits<double>::infinity()));
-  const std::size_t posts = static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
+  const std::size_t count = static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
   for (int round = 0; round < settings.rounds; ++round) {
     for (std::size_t t = 0; t < targets.size(); ++t) {
       limitSimdTarget(targets[t]);
       for (std::size_t s = 0; s < stages.size(); ++s)
-        times[t][s] = std::min(times[t][s], nanosecondsPerPost(settings, posts, stages[s].work));
+        times[t][s] = std::min(times[t][s], nanosecondsPerPost(settings, count, stages[s].work));
     }
   }
   limitSimdTarget(std::nullopt);
