@@ -30,6 +30,7 @@ class Sweeper {
     RenderOptions options = request_.common;
     options.camera = view.camera;
     options.tolerance = setting.tolerance;
+    options.lod = setting.lod;
     return engine_->render(*databases_[setting.database], options, statistics);
   }
 

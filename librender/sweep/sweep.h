@@ -29,7 +29,8 @@ struct SweepView {
 
 struct SweepSetting {
   std::size_t database = 0;  // index into what is swept; 0 is the user's own, the others are made of it
-  double tolerance = 1;      // pixels
+  double tolerance = 1;      // pixels; with LodScheme::kReport of models alone
+  LodScheme lod = LodScheme::kError;
 };
 
 struct SweepRequest {

@@ -90,6 +90,14 @@ def coarser_quanta_are_built_measured_and_thrown_away(folder):
 
 
 @case
+def ranges_of_the_report_are_one_row_without_a_bound(folder):
+    rows = run("dbview", "sweep", build(folder, RAINIER), *SMALL, "--lods", "error,report", "--tolerances", "1,4", "--json").json()["all_views"]
+    require([(row["setting"]["tolerance"], row["setting"]["lod"]) for row in rows] == [(1, "error"), (4, "error"), (None, "report")], rows)
+    require([row["displacement_pixels"]["bound"] is None for row in rows] == [False, False, True], rows)
+    require(rows[2]["displacement_pixels"]["largest"] > rows[0]["displacement_pixels"]["largest"], rows)
+
+
+@case
 def views_of_a_file_are_drawn(folder):
     area, views = build(folder), folder / "views.json"
     views.write_text(json.dumps({"views": [{"name": "south", "eye": "46.0,7.2,3000", "look": "0,-20", "fov": 40},
@@ -124,7 +132,7 @@ def wrong_options_are_named(folder):
     mine = folder / "mine.json"
     mine.write_text("mine")
     for words, options in [(["--tolerances"], ["--tolerances", "1,x"]), (["--tolerances", "twice"], ["--tolerances", "1,1.0"]),
-                           (["--tolerances"], ["--tolerances", "-1"]), (["--quanta"], ["--quanta", "0"]),
+                           (["--tolerances"], ["--tolerances", "-1"]), (["--quanta"], ["--quanta", "0"]), (["--lods"], ["--lods", "range"]),
                            (["--repeat"], ["--repeat", "0"]), (["--reference"], ["--reference", "high"]),
                            (["--report", "png"], ["--report", "png=x"]), (["--report"], ["--report", "svg="]),
                            (["one file"], ["--report", f"json={folder}/x,svg={folder}/x"]),

@@ -79,7 +79,14 @@ Result<std::vector<SweepView>> viewsOf(const Database& database, const SweepPlan
 std::vector<SweepSetting> settingsOf(const SweepPlan& plan, std::size_t databases) {
   std::vector<SweepSetting> settings;
   for (std::size_t database = 0; database < databases; ++database) {
-    for (const double tolerance : plan.tolerances) settings.push_back({database, tolerance});
+    for (const LodScheme lod : plan.lods) {
+      if (lod == LodScheme::kReport) {
+        // Ranges know no tolerance; models are drawn at the default one.
+        settings.push_back({database, 1, lod});
+        continue;
+      }
+      for (const double tolerance : plan.tolerances) settings.push_back({database, tolerance, lod});
+    }
   }
   return settings;
 }

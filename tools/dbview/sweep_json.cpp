@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/dbview/options.h"
 #include "tools/dbview/statistics_json.h"
 
 namespace deltaz {
@@ -18,7 +19,10 @@ Json rowsJson(const SweepReport& report, const std::vector<SweepRow>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SweepRow& row = rows[k];
     Json one;
-    one["setting"] = {{"tolerance", row.setting.tolerance}, {"quantum", report.quanta[row.setting.database]}};
+    const bool by_range = row.setting.lod == LodScheme::kReport;
+    one["setting"] = {{"tolerance", by_range ? Json(nullptr) : Json(row.setting.tolerance)},
+                      {"lod", lodName(row.setting.lod)},
+                      {"quantum", report.quanta[row.setting.database]}};
     one["frame_ms"] = {{"min", row.milliseconds.minimum},
                        {"median", row.milliseconds.median},
                        {"max", row.milliseconds.maximum}};

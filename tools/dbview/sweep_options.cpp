@@ -60,6 +60,19 @@ Result<std::vector<Rational>> parseQuanta(const std::string& text) {
   return values;
 }
 
+Result<std::vector<LodScheme>> parseLods(const std::string& text) {
+  DELTAZ_TRY_ASSIGN(const std::vector<std::string> parts, listOf(text, "--lods"));
+  std::vector<LodScheme> values;
+  for (const std::string& part : parts) {
+    if (part != "error" && part != "report")
+      return usageError("--lods", fmt::format("'{}' is neither error nor report", part));
+    const LodScheme value = part == "report" ? LodScheme::kReport : LodScheme::kError;
+    if (std::find(values.begin(), values.end(), value) != values.end()) return repeatedValue("--lods", part);
+    values.push_back(value);
+  }
+  return values;
+}
+
 Status parseReports(const SweepOptions& options, SweepPlan& plan) {
   for (const std::string& report : options.reports) {
     const bool json = report.starts_with("json=");
@@ -94,6 +107,9 @@ void addSweepOptions(CLI::App& app, SweepOptions& options) {
   app.add_option("--quanta", options.quanta,
                  "Height steps to try beside the database's own, metres: for each a temporary copy is built")
       ->type_name("METRES,...");
+  app.add_option("--lods", options.lods,
+                 "Level of detail by error, or by range as in 1983, or both: error,report (default: error)")
+      ->type_name("LOD,...");
   app.add_option("--reference", options.reference,
                  "Tolerance of the picture that colours are held against, pixels (default: 0, full "
                  "resolution)")
@@ -117,6 +133,7 @@ Result<SweepPlan> parseSweep(const SweepOptions& options) {
   if (!options.views_path.empty() && !plan.camera.whole_area)
     return usageError("--views", "--views and --eye exclude each other");
   DELTAZ_TRY_ASSIGN(plan.tolerances, parseTolerances(options.tolerances));
+  DELTAZ_TRY_ASSIGN(plan.lods, parseLods(options.lods));
   DELTAZ_TRY_ASSIGN(plan.quanta, parseQuanta(options.quanta));
   DELTAZ_TRY_ASSIGN(plan.reference_tolerance,
                     parseNumberBetween(options.reference, "--reference", 0, kLargestTolerance));

@@ -16,6 +16,7 @@ struct SweepOptions {
   std::string area, views_path;
   std::string tolerances = "0.25,0.5,1,2,4";
   std::string quanta;
+  std::string lods = "error";
   std::string reference = "0";
   std::string repeat = "5";
   std::vector<std::string> reports;
@@ -30,6 +31,7 @@ struct SweepPlan {
   bool views_of_area = false;
   std::vector<NamedCameraRequest> views;  // of --views
   std::vector<double> tolerances;
+  std::vector<LodScheme> lods;
   std::vector<Rational> quanta;  // beside the database's own
   double reference_tolerance = 0;
   int repeats = 5;

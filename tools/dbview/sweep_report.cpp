@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <span>
 
+#include "tools/dbview/options.h"
+
 namespace deltaz {
 
 namespace {
@@ -27,8 +29,9 @@ bool contains(const std::vector<std::size_t>& front, std::size_t k) {
 }
 
 std::string tableOf(const SweepReport& report, std::span<const SweepRow> rows) {
+  const std::vector<SweptKnob> knobs = sweptKnobs(report);
   std::string text = fmt::format("{:>8}", "tol px");
-  if (report.sweepsQuanta()) text += fmt::format(" {:>9}", "quantum m");
+  for (const SweptKnob& knob : knobs) text += fmt::format(" {:>9}", knob.heading);
   text += fmt::format(" {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>8} {:>7} {:>10} {:>9}  {}\n", "ms", "least",
                       "most", "worst px", "99.9% px", "bound px", "differ", "PSNR dB", "triangles",
                       "read KiB", "front");
@@ -36,8 +39,8 @@ std::string tableOf(const SweepReport& report, std::span<const SweepRow> rows) {
                                  colored = frontOf(rows, SweepMeasure::kPicture);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SweepRow& row = rows[k];
-    std::string line = fmt::format("{:>8}", row.setting.tolerance);
-    if (report.sweepsQuanta()) line += fmt::format(" {:>9}", report.quanta[row.setting.database]);
+    std::string line = fmt::format("{:>8}", toleranceText(row.setting));
+    for (const SweptKnob& knob : knobs) line += fmt::format(" {:>9}", knob.text(row.setting));
     line += fmt::format(
         " {:>8.2f} {:>8.2f} {:>8.2f} {:>9.3f} {:>9.3f} {:>8.3f} {:>7.2f}% {:>7} {:>10} {:>9}  {}{}",
         row.milliseconds.median, row.milliseconds.minimum, row.milliseconds.maximum, row.displacement.largest,
@@ -52,10 +55,43 @@ std::string tableOf(const SweepReport& report, std::span<const SweepRow> rows) {
 
 }  // namespace
 
-std::string settingName(const SweepReport& report, const SweepSetting& setting) {
-  std::string name = fmt::format("{} px", setting.tolerance);
-  if (report.sweepsQuanta()) name += fmt::format(", quantum {} m", report.quanta[setting.database]);
+std::vector<SweptKnob> sweptKnobs(const SweepReport& report) {
+  const auto differ = [&](const auto& value) {
+    return std::any_of(report.all.begin(), report.all.end(), [&](const SweepRow& row) {
+      return value(row.setting) != value(report.all.front().setting);
+    });
+  };
+  std::vector<SweptKnob> knobs;
+  if (differ([](const SweepSetting& setting) { return setting.lod; })) {
+    knobs.push_back({"lod", [](const SweepSetting& setting) { return std::string(lodName(setting.lod)); },
+                     [](const SweepSetting& setting) {
+                       return std::string(setting.lod == LodScheme::kReport ? "by range" : "by error");
+                     }});
+  }
+  if (differ([](const SweepSetting& setting) { return setting.database; })) {
+    knobs.push_back({"quantum m",
+                     [&](const SweepSetting& setting) { return report.quanta[setting.database]; },
+                     [&](const SweepSetting& setting) {
+                       return fmt::format("quantum {} m", report.quanta[setting.database]);
+                     }});
+  }
+  return knobs;
+}
+
+std::string toleranceText(const SweepSetting& setting) {
+  return setting.lod == LodScheme::kReport ? "-" : fmt::format("{}", setting.tolerance);
+}
+
+std::string knobsName(const SweepReport& report, const SweepSetting& setting) {
+  std::string name;
+  for (const SweptKnob& knob : sweptKnobs(report)) name += (name.empty() ? "" : ", ") + knob.phrase(setting);
   return name;
+}
+
+std::string settingName(const SweepReport& report, const SweepSetting& setting) {
+  const std::string knobs = knobsName(report, setting);
+  if (setting.lod == LodScheme::kReport) return knobs.empty() ? "by range" : knobs;
+  return fmt::format("{} px{}{}", setting.tolerance, knobs.empty() ? "" : ", ", knobs);
 }
 
 std::string frontSentence(const SweepReport& report, SweepMeasure measure) {

@@ -2,6 +2,7 @@
 // name what an error costs.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,21 @@ struct SweepReport {
   SweepMachine machine;
   std::vector<SweepOfView> views;
   std::vector<SweepRow> all;  // over all views
-
-  // Whether more than one value of a knob was tried.
-  bool sweepsQuanta() const { return quanta.size() > 1; }
 };
+
+// A knob besides the tolerance, of which several values were tried.
+struct SweptKnob {
+  std::string heading;                                     // of the table's column
+  std::function<std::string(const SweepSetting&)> text;    // in the table: "0.1"
+  std::function<std::string(const SweepSetting&)> phrase;  // in a sentence: "quantum 0.1 m"
+};
+std::vector<SweptKnob> sweptKnobs(const SweepReport& report);
+
+// "0.5", or "-" where ranges stand in the tolerance's place.
+std::string toleranceText(const SweepSetting& setting);
+
+// The values of the swept knobs, "quantum 0.1 m, ..."; empty where none was swept.
+std::string knobsName(const SweepReport& report, const SweepSetting& setting);
 
 // "0.5 px", or with whatever other knobs were swept: "0.5 px, quantum 0.1 m".
 std::string settingName(const SweepReport& report, const SweepSetting& setting);

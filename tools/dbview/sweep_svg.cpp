@@ -10,11 +10,6 @@ namespace deltaz {
 
 namespace {
 
-// Points of one group differ in tolerance only.
-std::string groupName(const SweepReport& report, const SweepSetting& setting) {
-  return fmt::format("quantum {} m", report.quanta[setting.database]);
-}
-
 ScatterPanel panelOf(const SweepReport& report, SweepMeasure measure) {
   ScatterPanel panel;
   const bool moved = measure == SweepMeasure::kDisplacement;
@@ -23,7 +18,8 @@ ScatterPanel panelOf(const SweepReport& report, SweepMeasure measure) {
   panel.y_label =
       moved ? "largest displacement on the screen, pixels" : "root mean square difference, of 255";
   for (const SweepRow& row : report.all) {
-    const std::string group = groupName(report, row.setting);
+    // Points of one group differ in tolerance only.
+    const std::string group = knobsName(report, row.setting);
     const auto found = std::find(panel.groups.begin(), panel.groups.end(), group);
     ScatterPoint point;
     point.x = row.milliseconds.median;
