@@ -100,7 +100,7 @@ std::vector<Row> rowsOf(const Camera& camera, bool smoke) {
     row.options.report_lod = report;
   };
   add("full resolution", LodScheme::kError, 0, {});
-  for (const double tolerance : smoke ? std::vector<double>{4} : std::vector<double>{0.5, 1, 2, 4, 8, 16})
+  for (const double tolerance : smoke ? std::vector<double>{4} : std::vector<double>{0.5, 1, 2, 4, 8, 16, 64})
     add(fmt::format("error, {} pixel", tolerance), LodScheme::kError, tolerance, {});
   const ReportLod report;
   const auto ranges = [&](double share) {
