@@ -1,6 +1,7 @@
 #include "librender/objects/report_objects.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace deltaz {
@@ -69,11 +70,15 @@ Sphere sphereOf(const TerrainTile& tile, const std::vector<Vector3>& position, c
   }
   if (count == 0) return {};
   Sphere sphere{sum * (1.0 / count), 0};
+  double squared = 0;  // of the radius
   for (int j = object.first_row; j <= object.last_row; ++j) {
     for (int i = object.first_column; i <= object.last_column; ++i) {
-      if (tile.isValid(i, j)) sphere.radius = std::max(sphere.radius, length(metres(i, j) - sphere.centre));
+      if (!tile.isValid(i, j)) continue;
+      const Vector3 offset = metres(i, j) - sphere.centre;
+      squared = std::max(squared, dot(offset, offset));
     }
   }
+  sphere.radius = std::sqrt(squared);
   return sphere;
 }
 
