@@ -12,8 +12,10 @@
 #define DELTAZ_GOURAUD_SHADER_ONCE
 namespace deltaz {
 
-inline constexpr std::int32_t kShadeLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-inline constexpr std::int32_t kShadeLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+alignas(64) inline constexpr float kShadeLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3,
+                                                                0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) inline constexpr float kShadeLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                                                2, 2, 2, 2, 3, 3, 3, 3};
 
 }  // namespace deltaz
 #endif
@@ -83,6 +85,18 @@ HWY_INLINE Ints shade(const ShadingPlanes& p, Floats x, Floats y, Floats u) {
                 hn::Or(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(0xFF000000U))));
 }
 
+// One row of pixels out of a row of blocks.
+template <typename T>
+HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
+  const hn::CappedTag<T, kBlockSide> d;
+  int j = 0;
+  for (; j + kBlockSide <= columns; j += kBlockSide, blocks += kBlockPixels, out += kBlockSide) {
+    for (std::size_t k = 0; k < kBlockSide; k += hn::MaxLanes(d))
+      hn::StoreU(hn::Load(d, blocks + k), d, out + k);
+  }
+  for (int k = 0; j + k < columns; ++k) out[k] = blocks[k];
+}
+
 void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, const TileBuffer& buffer,
                GouraudScratch& scratch, ColorFrame& frame) {
   scratch.slot.assign(triangles.size(), kNoTriangle);
@@ -101,48 +115,40 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
   const int columns = std::min(kTileSide, tile.width - tile.j * kTileSide);
   const int rows = std::min(kTileSide, tile.height - tile.i * kTileSide);
-  // Four rows of the tile, which leave as whole lines.
-  alignas(64) std::int32_t color[kBlockSide][kTileSide];
-  alignas(64) float depth[kBlockSide][kTileSide];
+  // A row of blocks, coloured block by block, leaves as four rows of pixels.
+  alignas(64) std::int32_t color[kBlocksAcross * kBlockPixels];
   for (int block_i = 0; block_i * kBlockSide < rows; ++block_i) {
     const Floats block_y = hn::Set(kFloat, origin_y + static_cast<float>(block_i * kBlockSide));
-    for (int block_j = 0; block_j * kBlockSide < columns; ++block_j) {
-      const auto first = static_cast<std::size_t>((block_i * kBlocksAcross + block_j) * kBlockPixels);
-      const auto* const owner = reinterpret_cast<const std::int32_t*>(buffer.triangle.data()) + first;
-      const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block_j * kBlockSide));
-      alignas(64) std::int32_t of_block[kBlockPixels];
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        const Floats inverse_u = hn::Load(kFloat, buffer.inverse_u.data() + first + v * kLanes);
-        Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
-        auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
-        if (!hn::AllFalse(kInt, left)) {
-          const Ints owners = hn::Load(kInt, owner + v * kLanes);
-          const Floats x = hn::Add(block_x, hn::ConvertTo(kFloat, hn::Load(kInt, kShadeLaneJ + v * kLanes)));
-          const Floats y = hn::Add(block_y, hn::ConvertTo(kFloat, hn::Load(kInt, kShadeLaneI + v * kLanes)));
-          const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
-          do {
-            const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(kInt, left));
-            const std::int32_t triangle = owner[v * kLanes + lane];
-            const auto own = hn::And(left, hn::Eq(owners, hn::Set(kInt, triangle)));
-            result = hn::IfThenElse(own, shade(planes_of(triangle), x, y, u), result);
-            left = hn::AndNot(own, left);
-          } while (!hn::AllFalse(kInt, left));
-        }
-        hn::Store(result, kInt, of_block + v * kLanes);
+    const auto first_of_row = static_cast<std::size_t>(block_i) * kBlocksAcross * kBlockPixels;
+    const float* const depth = buffer.inverse_u.data() + first_of_row;
+    const auto* const owner = reinterpret_cast<const std::int32_t*>(buffer.triangle.data()) + first_of_row;
+    for (std::size_t n = 0; n < kBlocksAcross * kBlockPixels; n += kLanes) {
+      const Floats inverse_u = hn::Load(kFloat, depth + n);
+      Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
+      auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
+      if (!hn::AllFalse(kInt, left)) {
+        const std::size_t v = n % kBlockPixels;
+        const Ints owners = hn::Load(kInt, owner + n);
+        const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(n / kBlockPixels * kBlockSide));
+        const Floats x = hn::Add(block_x, hn::Load(kFloat, kShadeLaneJ + v));
+        const Floats y = hn::Add(block_y, hn::Load(kFloat, kShadeLaneI + v));
+        const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
+        do {
+          const std::int32_t triangle = owner[n + static_cast<std::size_t>(hn::FindFirstTrue(kInt, left))];
+          const auto own = hn::And(left, hn::Eq(owners, hn::Set(kInt, triangle)));
+          result = hn::IfThenElse(own, shade(planes_of(triangle), x, y, u), result);
+          left = hn::AndNot(own, left);
+        } while (!hn::AllFalse(kInt, left));
       }
-      for (std::size_t i = 0; i < kBlockSide; ++i) {
-        const auto j = static_cast<std::size_t>(block_j * kBlockSide);
-        std::memcpy(&color[i][j], of_block + i * kBlockSide, kBlockSide * 4);
-        std::memcpy(&depth[i][j], buffer.inverse_u.data() + first + i * kBlockSide, kBlockSide * 4);
-      }
+      hn::Store(result, kInt, color + n);
     }
     const int height = std::min(kBlockSide, rows - block_i * kBlockSide);
     for (int i = 0; i < height; ++i) {
       const std::size_t pixel = static_cast<std::size_t>(tile.i * kTileSide + block_i * kBlockSide + i) *
                                     static_cast<std::size_t>(frame.width) +
                                 static_cast<std::size_t>(tile.j * kTileSide);
-      std::memcpy(&frame.rgba[pixel], color[i], static_cast<std::size_t>(columns) * 4);
-      std::memcpy(&frame.inverse_u[pixel], depth[i], static_cast<std::size_t>(columns) * 4);
+      copyRow(reinterpret_cast<const std::uint32_t*>(color) + i * kBlockSide, columns, &frame.rgba[pixel]);
+      copyRow(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
     }
   }
 }

@@ -7,7 +7,9 @@
 #include <bit>
 #include <cstring>
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
+#include <numeric>
 
 #ifndef DELTAZ_TILE_RASTERIZER_ONCE
 #define DELTAZ_TILE_RASTERIZER_ONCE
@@ -16,20 +18,25 @@ namespace deltaz {
 // Triangles that are set up together.
 inline constexpr std::size_t kBatch = 16;
 
-// What set-up makes of a batch, an array for each quantity.
+// What set-up makes of a batch, an array for each quantity. Edge functions are per_j * j + per_i * i +
+// constant >= 0 for the samples inside; the third one's gradient is what brings the sum of the three to zero.
 struct alignas(64) SetUpBatch {
-  // Edge functions: per_j * j + per_i * i + at_origin >= 0 for the samples inside, j and i from the tile's
-  // first pixel.
-  std::int32_t per_j[3][kBatch], per_i[3][kBatch], at_origin[3][kBatch];
-  // 1/U = (gradient_x (x - anchor_x) + gradient_y (y - anchor_y)) + value
-  float anchor_x[kBatch], anchor_y[kBatch], value[kBatch], gradient_x[kBatch], gradient_y[kBatch];
+  std::int32_t per_j[2][kBatch], per_i[2][kBatch];
+  std::int32_t at_origin[3][kBatch];  // at the tile's first pixel
+  // Blocks of the tile that the bounding box touches, first_j | first_i << 8 | last_j << 16 | last_i << 24; a
+  // first that is greater than the last if there are none.
+  std::uint32_t blocks[kBatch];
+  // 1/U at the first pixel of the first block, its gradient, and its range.
+  float at_first[kBatch], gradient_x[kBatch], gradient_y[kBatch];
   float least[kBatch], greatest[kBatch];
-  // Blocks of the tile that the bounding box touches; none if first > last.
-  std::int32_t first_block_j[kBatch], last_block_j[kBatch], first_block_i[kBatch], last_block_i[kBatch];
 };
 
-inline constexpr std::int32_t kLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-inline constexpr std::int32_t kLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+alignas(64) inline constexpr std::int32_t kLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3,
+                                                                  0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) inline constexpr std::int32_t kLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                                                  2, 2, 2, 2, 3, 3, 3, 3};
+alignas(64) inline constexpr float kLaneX[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) inline constexpr float kLaneY[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
 // Edge functions within a tile stay below this for triangles in the guard band; beyond it only their sign
 // counts.
@@ -65,100 +72,131 @@ class TileRasterizer {
       : tile_(tile),
         buffer_(buffer),
         counts_(counts),
-        origin_x_(static_cast<float>(tile.j * kTileSide) - static_cast<float>(tile.width - 1) * 0.5F),
-        origin_y_(static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F),
         columns_(std::min(kTileSide, tile.width - tile.j * kTileSide)),
-        rows_(std::min(kTileSide, tile.height - tile.i * kTileSide)) {}
+        rows_(std::min(kTileSide, tile.height - tile.i * kTileSide)),
+        tested_(hn::Zero(kInt)),
+        written_(hn::Zero(kInt)) {}
 
   void run(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
-    for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
-      const std::size_t count = std::min(kBatch, triangles.size() - first);
-      setUp(triangles.subspan(first, count));
-      for (std::size_t t = 0; t < count; ++t) {
-        covers_ = hidden_ = false;
-        draw(t, static_cast<std::uint32_t>(first + t));
-        settle(triangles[first + t]->crossing, crossing);
-      }
+    if (columns_ % kBlockSide == 0 && rows_ % kBlockSide == 0) {
+      runBatches<false>(triangles, crossing);
+    } else {
+      runBatches<true>(triangles, crossing);
     }
+    counts_.tested += static_cast<std::uint64_t>(sum(tested_));
+    counts_.written += static_cast<std::uint64_t>(sum(written_));
   }
 
  private:
-  void settle(std::uint32_t number, std::span<std::uint8_t> crossing) {
-    if (number == 0) {
-      counts_.drawn += covers_ || hidden_ ? 1 : 0;
-      counts_.hidden += !covers_ && hidden_ ? 1 : 0;
-      counts_.no_sample += covers_ || hidden_ ? 0 : 1;
-      return;
-    }
-    const auto bits =
-        static_cast<std::uint8_t>((covers_ ? kCrossingCovers : 0) | (hidden_ ? kCrossingHidden : 0));
-    std::atomic_ref<std::uint8_t>(crossing[number - 1]).fetch_or(bits, std::memory_order_relaxed);
-  }
-
-  void setUp(std::span<const RasterTriangle* const> triangles) {
-    alignas(64) float x[3][kBatch], y[3][kBatch], w[3][kBatch];
-    alignas(64) std::int32_t snapped_x[3][kBatch], snapped_y[3][kBatch];
-    for (std::size_t t = 0; t < kBatch; ++t) {
-      const RasterTriangle& triangle = *triangles[std::min(t, triangles.size() - 1)];
-      for (std::size_t k = 0; k < 3; ++k) {
-        x[k][t] = triangle.vertex[k].x;
-        y[k][t] = triangle.vertex[k].y;
-        w[k][t] = triangle.vertex[k].inverse_u;
+  // `kCut`: the picture ends inside blocks of the tile.
+  template <bool kCut>
+  void runBatches(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
+    SetUpBatch batch;
+    for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
+      const std::size_t count = std::min(kBatch, triangles.size() - first);
+      setUp(triangles.data() + first, count, batch);
+      // The triangles after next are on their way while these are drawn.
+      for (std::size_t t = first + kBatch; t < std::min(first + 2 * kBatch, triangles.size()); ++t)
+        hwy::Prefetch(triangles[t]);
+      for (std::size_t t = 0; t < count; ++t) {
+        const Outcome outcome = draw<kCut>(batch, t, static_cast<std::int32_t>(first + t));
+        settle(outcome, triangles[first + t]->crossing, crossing);
       }
     }
-    const std::int32_t tile_x = tile_.j * kTileSide * kSubPixels, tile_y = tile_.i * kTileSide * kSubPixels;
+  }
+
+  struct Outcome {
+    bool covers = false, hidden = false;
+  };
+
+  HWY_INLINE void settle(Outcome outcome, std::uint32_t number, std::span<std::uint8_t> crossing) {
+    const bool drawn = outcome.covers || outcome.hidden;
+    if (number == 0) {
+      counts_.drawn += drawn ? 1 : 0;
+      counts_.hidden += drawn && !outcome.covers ? 1 : 0;
+      counts_.no_sample += drawn ? 0 : 1;
+    } else if (drawn) {
+      const auto bits = static_cast<std::uint8_t>((outcome.covers ? kCrossingCovers : 0) |
+                                                  (outcome.hidden ? kCrossingHidden : 0));
+      std::atomic_ref<std::uint8_t>(crossing[number - 1]).fetch_or(bits, std::memory_order_relaxed);
+    }
+  }
+
+  static std::int64_t sum(Ints counts) {
+    alignas(64) std::int32_t lanes[kLanes];
+    hn::Store(counts, kInt, lanes);
+    return std::accumulate(lanes, lanes + kLanes, std::int64_t{0});
+  }
+
+  HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count, SetUpBatch& batch) const {
+    alignas(64) RasterVertex vertex[3][kBatch];
+    for (std::size_t t = 0; t < kBatch; ++t) {
+      const RasterTriangle& triangle = *triangles[std::min(t, count - 1)];
+      for (std::size_t k = 0; k < 3; ++k) vertex[k][t] = triangle.vertex[k];
+    }
+    alignas(64) float x[3][kBatch], y[3][kBatch], w[3][kBatch];
+    alignas(64) std::int32_t snapped_x[3][kBatch], snapped_y[3][kBatch];
+    alignas(64) float first_x[kBatch], first_y[kBatch];
+    const std::int32_t tile_x = tile_.j * kTileSide, tile_y = tile_.i * kTileSide;
     for (std::size_t t = 0; t < kBatch; t += kLanes) {
       // Snapped coordinates from the tile's first pixel.
       const Floats scale = hn::Set(kFloat, static_cast<float>(kSubPixels));
-      const Ints offset_x = hn::Set(kInt, (tile_.width - 1) * (kSubPixels / 2) - tile_x);
-      const Ints offset_y = hn::Set(kInt, (tile_.height - 1) * (kSubPixels / 2) - tile_y);
+      const Ints offset_x = hn::Set(kInt, (tile_.width - 1) * (kSubPixels / 2) - tile_x * kSubPixels);
+      const Ints offset_y = hn::Set(kInt, (tile_.height - 1) * (kSubPixels / 2) - tile_y * kSubPixels);
       Ints sx[3], sy[3];
+      Floats vw[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        sx[k] = hn::Add(hn::NearestInt(hn::Mul(hn::Load(kFloat, x[k] + t), scale)), offset_x);
-        sy[k] = hn::Add(hn::NearestInt(hn::Mul(hn::Load(kFloat, y[k] + t), scale)), offset_y);
+        Floats vx, vy, payload;
+        hn::LoadInterleaved4(kFloat, reinterpret_cast<const float*>(vertex[k] + t), vx, vy, vw[k], payload);
+        hn::Store(vx, kFloat, x[k] + t);
+        hn::Store(vy, kFloat, y[k] + t);
+        hn::Store(vw[k], kFloat, w[k] + t);
+        sx[k] = hn::Add(hn::NearestInt(hn::Mul(vx, scale)), offset_x);
+        sy[k] = hn::Add(hn::NearestInt(hn::Mul(vy, scale)), offset_y);
         hn::Store(sx[k], kInt, snapped_x[k] + t);
         hn::Store(sy[k], kInt, snapped_y[k] + t);
       }
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = k == 2 ? 0 : k + 1;
-        hn::Store(hn::Sub(sy[k], sy[next]), kInt, batch_.per_j[k] + t);
-        hn::Store(hn::Sub(sx[next], sx[k]), kInt, batch_.per_i[k] + t);
+      for (std::size_t k = 0; k < 2; ++k) {
+        hn::Store(hn::Sub(sy[k], sy[k + 1]), kInt, batch.per_j[k] + t);
+        hn::Store(hn::Sub(sx[k + 1], sx[k]), kInt, batch.per_i[k] + t);
       }
-      const Ints round_up = hn::Set(kInt, kSubPixels - 1), zero = hn::Zero(kInt);
-      const auto first = [&](const Ints* s) {
+      const auto first_of = [&](const Ints* s) {
         const Ints least = hn::Min(hn::Min(s[0], s[1]), s[2]);
-        return hn::ShiftRight<2>(hn::Max(zero, hn::ShiftRight<kSubPixelBits>(hn::Add(least, round_up))));
+        const Ints rounded = hn::ShiftRight<kSubPixelBits>(hn::Add(least, hn::Set(kInt, kSubPixels - 1)));
+        return hn::ShiftRight<2>(hn::Max(hn::Zero(kInt), rounded));
       };
-      const auto last = [&](const Ints* s, int extent) {
+      const auto last_of = [&](const Ints* s, int extent) {
         const Ints greatest = hn::Max(hn::Max(s[0], s[1]), s[2]);
         return hn::ShiftRight<2>(hn::Min(hn::Set(kInt, extent - 1), hn::ShiftRight<kSubPixelBits>(greatest)));
       };
-      hn::Store(first(sx), kInt, batch_.first_block_j + t);
-      hn::Store(last(sx, columns_), kInt, batch_.last_block_j + t);
-      hn::Store(first(sy), kInt, batch_.first_block_i + t);
-      hn::Store(last(sy, rows_), kInt, batch_.last_block_i + t);
-
-      const Floats w0 = hn::Load(kFloat, w[0] + t), w1 = hn::Load(kFloat, w[1] + t),
-                   w2 = hn::Load(kFloat, w[2] + t);
-      hn::Store(hn::Load(kFloat, x[0] + t), kFloat, batch_.anchor_x + t);
-      hn::Store(hn::Load(kFloat, y[0] + t), kFloat, batch_.anchor_y + t);
-      hn::Store(w0, kFloat, batch_.value + t);
-      hn::Store(hn::Min(hn::Min(w0, w1), w2), kFloat, batch_.least + t);
-      hn::Store(hn::Max(hn::Max(w0, w1), w2), kFloat, batch_.greatest + t);
+      const Ints first_j = first_of(sx), first_i = first_of(sy);
+      const Ints last_j = last_of(sx, columns_), last_i = last_of(sy, rows_);
+      const auto none = hn::Or(hn::Gt(first_j, last_j), hn::Gt(first_i, last_i));
+      const Ints packed = hn::Or(hn::Or(first_j, hn::ShiftLeft<8>(first_i)),
+                                 hn::Or(hn::ShiftLeft<16>(last_j), hn::ShiftLeft<24>(last_i)));
+      hn::Store(hn::IfThenElse(none, hn::Set(kInt, 1), packed), kInt,
+                reinterpret_cast<std::int32_t*>(batch.blocks) + t);
+      const Floats centre_x =
+          hn::Set(kFloat, static_cast<float>(tile_x) - static_cast<float>(tile_.width - 1) * 0.5F);
+      const Floats centre_y =
+          hn::Set(kFloat, static_cast<float>(tile_y) - static_cast<float>(tile_.height - 1) * 0.5F);
+      hn::Store(hn::Add(hn::ConvertTo(kFloat, hn::ShiftLeft<2>(first_j)), centre_x), kFloat, first_x + t);
+      hn::Store(hn::Add(hn::ConvertTo(kFloat, hn::ShiftLeft<2>(first_i)), centre_y), kFloat, first_y + t);
+      hn::Store(hn::Min(hn::Min(vw[0], vw[1]), vw[2]), kFloat, batch.least + t);
+      hn::Store(hn::Max(hn::Max(vw[0], vw[1]), vw[2]), kFloat, batch.greatest + t);
     }
 
     // Products of coordinates are exact in double.
     constexpr DoubleTag d;
     constexpr HalfFloatTag half_float;
     constexpr HalfIntTag half_int;
-    constexpr std::size_t step = hn::MaxLanes(DoubleTag());
     const auto one = hn::Set(d, 1.0), zero = hn::Zero(d);
-    for (std::size_t t = 0; t < kBatch; t += step) {
+    for (std::size_t t = 0; t < kBatch; t += hn::MaxLanes(DoubleTag())) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto per_j = hn::PromoteTo(d, hn::Load(half_int, batch_.per_j[k] + t));
-        const auto per_i = hn::PromoteTo(d, hn::Load(half_int, batch_.per_i[k] + t));
-        const auto vx = hn::PromoteTo(d, hn::Load(half_int, snapped_x[k] + t));
-        const auto vy = hn::PromoteTo(d, hn::Load(half_int, snapped_y[k] + t));
+        const std::size_t next = k == 2 ? 0 : k + 1;
+        const auto at = [&](const std::int32_t* p) { return hn::PromoteTo(d, hn::Load(half_int, p + t)); };
+        const auto vx = at(snapped_x[k]), vy = at(snapped_y[k]);
+        const auto per_j = hn::Sub(vy, at(snapped_y[next])), per_i = hn::Sub(at(snapped_x[next]), vx);
         // A sample on an edge is a left or top edge's; the functions are integers, so "greater than zero" is
         // "at least zero" after subtracting one. Samples lie 256 units apart, so a 256th, rounded down, has
         // their sign.
@@ -166,119 +204,142 @@ class TileRasterizer {
         const auto at_origin = hn::Sub(hn::Neg(hn::Add(hn::Mul(per_j, vx), hn::Mul(per_i, vy))),
                                        hn::IfThenElse(keeps, zero, one));
         const auto scaled = hn::Floor(hn::Mul(at_origin, hn::Set(d, 1.0 / kSubPixels)));
-        hn::Store(hn::DemoteTo(half_int,
-                               hn::Min(hn::Max(scaled, hn::Set(d, -kSaturation)), hn::Set(d, kSaturation))),
-                  half_int, batch_.at_origin[k] + t);
+        const auto limited = hn::Min(hn::Max(scaled, hn::Set(d, -kSaturation)), hn::Set(d, kSaturation));
+        hn::Store(hn::DemoteTo(half_int, limited), half_int, batch.at_origin[k] + t);
       }
-      const auto load = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
-      const auto x0 = load(x[0]), y0 = load(y[0]), w0 = load(w[0]);
-      const auto bx = hn::Sub(load(x[1]), x0), by = hn::Sub(load(y[1]), y0), bw = hn::Sub(load(w[1]), w0);
-      const auto cx = hn::Sub(load(x[2]), x0), cy = hn::Sub(load(y[2]), y0), cw = hn::Sub(load(w[2]), w0);
+      const auto at = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
+      const auto x0 = at(x[0]), y0 = at(y[0]), w0 = at(w[0]);
+      const auto bx = hn::Sub(at(x[1]), x0), by = hn::Sub(at(y[1]), y0), bw = hn::Sub(at(w[1]), w0);
+      const auto cx = hn::Sub(at(x[2]), x0), cy = hn::Sub(at(y[2]), y0), cw = hn::Sub(at(w[2]), w0);
       const auto determinant = hn::Sub(hn::Mul(bx, cy), hn::Mul(cx, by));
       const auto inverse = hn::IfThenElse(hn::Eq(determinant, zero), zero, hn::Div(one, determinant));
       const auto limited = [&](auto gradient) {
-        return hn::DemoteTo(half_float,
-                            hn::Min(hn::Max(gradient, hn::Set(d, -kSteepest)), hn::Set(d, kSteepest)));
+        return hn::Min(hn::Max(hn::Mul(gradient, inverse), hn::Set(d, -kSteepest)), hn::Set(d, kSteepest));
       };
-      hn::Store(limited(hn::Mul(hn::Sub(hn::Mul(bw, cy), hn::Mul(cw, by)), inverse)), half_float,
-                batch_.gradient_x + t);
-      hn::Store(limited(hn::Mul(hn::Sub(hn::Mul(bx, cw), hn::Mul(cx, bw)), inverse)), half_float,
-                batch_.gradient_y + t);
+      const auto gradient_x = limited(hn::Sub(hn::Mul(bw, cy), hn::Mul(cw, by)));
+      const auto gradient_y = limited(hn::Sub(hn::Mul(bx, cw), hn::Mul(cx, bw)));
+      const auto at_first = hn::Add(w0, hn::Add(hn::Mul(gradient_x, hn::Sub(at(first_x), x0)),
+                                                hn::Mul(gradient_y, hn::Sub(at(first_y), y0))));
+      hn::Store(hn::DemoteTo(half_float, gradient_x), half_float, batch.gradient_x + t);
+      hn::Store(hn::DemoteTo(half_float, gradient_y), half_float, batch.gradient_y + t);
+      hn::Store(hn::DemoteTo(half_float, at_first), half_float, batch.at_first + t);
     }
   }
 
-  // A triangle with what its blocks share.
+  // A triangle with what its blocks share: edge functions and 1/U relative to a block's first pixel.
   struct Lanes {
     Ints edge[3][kVectors];
     Floats inverse_u[kVectors], least, greatest;
     Ints number;
-    float anchor_x, anchor_y, value, gradient_x, gradient_y;
   };
 
-  HWY_INLINE void draw(std::size_t t, std::uint32_t number) {
-    const std::int32_t first_j = batch_.first_block_j[t], last_j = batch_.last_block_j[t];
-    const std::int32_t first_i = batch_.first_block_i[t], last_i = batch_.last_block_i[t];
-    if (first_j > last_j || first_i > last_i) return;
+  template <bool kCut>
+  HWY_INLINE Outcome draw(const SetUpBatch& batch, std::size_t t, std::int32_t number) {
+    const std::uint32_t blocks = batch.blocks[t];
+    const auto first_j = static_cast<std::int32_t>(blocks & 0xFF),
+               first_i = static_cast<std::int32_t>(blocks >> 8 & 0xFF);
+    const auto last_j = static_cast<std::int32_t>(blocks >> 16 & 0xFF),
+               last_i = static_cast<std::int32_t>(blocks >> 24);
+    Outcome outcome;
+    if (first_j > last_j) return outcome;
+    const std::int32_t per_j[3] = {batch.per_j[0][t], batch.per_j[1][t],
+                                   -batch.per_j[0][t] - batch.per_j[1][t]};
+    const std::int32_t per_i[3] = {batch.per_i[0][t], batch.per_i[1][t],
+                                   -batch.per_i[0][t] - batch.per_i[1][t]};
     Lanes lanes;
     for (std::size_t v = 0; v < kVectors; ++v) {
       const Ints lane_j = hn::Load(kInt, kLaneJ + v * kLanes), lane_i = hn::Load(kInt, kLaneI + v * kLanes);
-      for (std::size_t k = 0; k < 3; ++k) {
-        lanes.edge[k][v] = hn::Add(hn::Mul(hn::Set(kInt, batch_.per_j[k][t]), lane_j),
-                                   hn::Mul(hn::Set(kInt, batch_.per_i[k][t]), lane_i));
+      for (std::size_t k = 0; k < 2; ++k) {
+        lanes.edge[k][v] =
+            hn::Add(hn::Mul(hn::Set(kInt, per_j[k]), lane_j), hn::Mul(hn::Set(kInt, per_i[k]), lane_i));
       }
+      lanes.edge[2][v] = hn::Neg(hn::Add(lanes.edge[0][v], lanes.edge[1][v]));
       lanes.inverse_u[v] =
-          hn::Add(hn::Mul(hn::Set(kFloat, batch_.gradient_x[t]), hn::ConvertTo(kFloat, lane_j)),
-                  hn::Mul(hn::Set(kFloat, batch_.gradient_y[t]), hn::ConvertTo(kFloat, lane_i)));
+          hn::Add(hn::Mul(hn::Set(kFloat, batch.gradient_x[t]), hn::Load(kFloat, kLaneX + v * kLanes)),
+                  hn::Mul(hn::Set(kFloat, batch.gradient_y[t]), hn::Load(kFloat, kLaneY + v * kLanes)));
     }
-    lanes.least = hn::Set(kFloat, batch_.least[t]);
-    lanes.greatest = hn::Set(kFloat, batch_.greatest[t]);
-    lanes.number = hn::Set(kInt, static_cast<std::int32_t>(number));
-    lanes.anchor_x = batch_.anchor_x[t];
-    lanes.anchor_y = batch_.anchor_y[t];
-    lanes.value = batch_.value[t];
-    lanes.gradient_x = batch_.gradient_x[t];
-    lanes.gradient_y = batch_.gradient_y[t];
+    lanes.least = hn::Set(kFloat, batch.least[t]);
+    lanes.greatest = hn::Set(kFloat, batch.greatest[t]);
+    lanes.number = hn::Set(kInt, number);
+
+    const float step_x = batch.gradient_x[t] * kBlockSide, step_y = batch.gradient_y[t] * kBlockSide;
     if (last_j - first_j >= kWide) {
-      drawWide(t, lanes, first_j, last_j, first_i, last_i);
-      return;
-    }
-    const float greatest = batch_.greatest[t];
-    for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
-      for (std::int32_t block_j = first_j; block_j <= last_j; ++block_j) {
-        if (greatest <= buffer_.least[static_cast<std::size_t>(block_i * kBlocksAcross + block_j)]) {
-          hidden_ = true;
-          continue;
-        }
-        std::int32_t corner[3];
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = cornerValue(t, k, block_j, block_i);
-        drawBlock<false>(lanes, corner, block_j, block_i);
+      std::int32_t corner[3];
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[k] = batch.at_origin[k][t] + per_i[k] * (first_i * kBlockSide);
+      for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
+        drawWideRow<kCut>(lanes, per_j, per_i, corner,
+                          batch.at_first[t] + step_y * static_cast<float>(block_i - first_i), step_x, first_j,
+                          last_j, block_i, outcome);
+        for (std::size_t k = 0; k < 3; ++k) corner[k] += per_i[k] * kBlockSide;
       }
+      return outcome;
     }
-  }
-
-  std::int32_t cornerValue(std::size_t t, std::size_t k, std::int32_t block_j, std::int32_t block_i) const {
-    return batch_.at_origin[k][t] + batch_.per_j[k][t] * (block_j * kBlockSide) +
-           batch_.per_i[k][t] * (block_i * kBlockSide);
-  }
-
-  // Row by row of blocks, all 16 of a row at once: which lie outside an edge, which inside all of them, which
-  // behind what is there.
-  HWY_INLINE void drawWide(std::size_t t, const Lanes& lanes, std::int32_t first_j, std::int32_t last_j,
-                           std::int32_t first_i, std::int32_t last_i) {
-    const std::uint32_t in_box = ((1U << (last_j - first_j + 1)) - 1) << first_j;
-    constexpr std::int32_t kFar = kBlockSide - 1;
+    std::int32_t row[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      row[k] = batch.at_origin[k][t] + per_j[k] * (first_j * kBlockSide) + per_i[k] * (first_i * kBlockSide);
+    const float greatest = batch.greatest[t];
     for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
-      std::uint32_t outside = 0, across = 0, nearer = 0;
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        auto least = hn::Set(kInt, 0x7FFFFFFF), greatest = least;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::int32_t per_j = batch_.per_j[k][t], per_i = batch_.per_i[k][t];
-          const Ints at_corner = hn::Add(hn::Set(kInt, cornerValue(t, k, 0, block_i)),
-                                         hn::Mul(hn::Set(kInt, per_j * kBlockSide),
-                                                 hn::Iota(kInt, static_cast<std::int32_t>(v * kLanes))));
-          const std::int32_t low = std::min(0, kFar * per_j) + std::min(0, kFar * per_i);
-          const std::int32_t high = std::max(0, kFar * per_j) + std::max(0, kFar * per_i);
-          least = hn::Min(least, hn::Add(at_corner, hn::Set(kInt, low)));
-          greatest = hn::Min(greatest, hn::Add(at_corner, hn::Set(kInt, high)));
-        }
-        outside |= bits(hn::Lt(greatest, hn::Zero(kInt))) << (v * kLanes);
-        across |= bits(hn::Lt(least, hn::Zero(kInt))) << (v * kLanes);
-        const Floats there = hn::Load(kFloat, buffer_.least.data() + block_i * kBlocksAcross + v * kLanes);
-        nearer |= floatBits(hn::Gt(lanes.greatest, there)) << (v * kLanes);
-      }
-      const std::uint32_t touched = in_box & ~outside;
-      if ((touched & ~nearer) != 0) hidden_ = true;
-      for (std::uint32_t left = touched & nearer; left != 0; left &= left - 1) {
-        const auto block_j = static_cast<std::int32_t>(std::countr_zero(left));
-        std::int32_t corner[3] = {0, 0, 0};
-        const bool partial =
-            columns_ - block_j * kBlockSide < kBlockSide || rows_ - block_i * kBlockSide < kBlockSide;
-        if ((across >> block_j & 1) != 0 || partial) {
-          for (std::size_t k = 0; k < 3; ++k) corner[k] = cornerValue(t, k, block_j, block_i);
-          drawBlock<false>(lanes, corner, block_j, block_i);
+      const float row_u = batch.at_first[t] + step_y * static_cast<float>(block_i - first_i);
+      std::int32_t e0 = row[0], e1 = row[1], e2 = row[2];
+      for (std::int32_t n = 0; n <= last_j - first_j; ++n) {
+        const auto block = static_cast<std::size_t>(block_i * kBlocksAcross + first_j + n);
+        if (greatest <= buffer_.least[block]) {
+          outcome.hidden = true;
         } else {
-          drawBlock<true>(lanes, corner, block_j, block_i);
+          outcome.covers |=
+              drawBlock<false, kCut>(lanes, e0, e1, e2, row_u + step_x * static_cast<float>(n), block);
         }
+        e0 += per_j[0] * kBlockSide;
+        e1 += per_j[1] * kBlockSide;
+        e2 += per_j[2] * kBlockSide;
+      }
+      for (std::size_t k = 0; k < 3; ++k) row[k] += per_i[k] * kBlockSide;
+    }
+    return outcome;
+  }
+
+  // All 16 blocks of a row at once: which lie outside an edge, which inside all of them, which behind what is
+  // there. `corner`: the edge functions at the tile's first pixel of the row.
+  template <bool kCut>
+  HWY_INLINE void drawWideRow(const Lanes& lanes, const std::int32_t (&per_j)[3],
+                              const std::int32_t (&per_i)[3], const std::int32_t (&corner)[3], float row_u,
+                              float step_x, std::int32_t first_j, std::int32_t last_j, std::int32_t block_i,
+                              Outcome& outcome) {
+    alignas(64) std::int32_t at_block[3][kBlocksAcross];
+    constexpr std::int32_t kFar = kBlockSide - 1;
+    std::uint32_t outside = 0, across = 0, nearer = 0;
+    for (std::size_t v = 0; v < kBlocksAcross; v += kLanes) {
+      Ints least = hn::Set(kInt, 0x7FFFFFFF), greatest = least;
+      const Ints block_j = hn::Iota(kInt, static_cast<std::int32_t>(v));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Ints value =
+            hn::Add(hn::Set(kInt, corner[k]), hn::Mul(hn::Set(kInt, per_j[k] * kBlockSide), block_j));
+        hn::Store(value, kInt, at_block[k] + v);
+        const std::int32_t low = std::min(0, kFar * per_j[k]) + std::min(0, kFar * per_i[k]);
+        const std::int32_t high = std::max(0, kFar * per_j[k]) + std::max(0, kFar * per_i[k]);
+        least = hn::Min(least, hn::Add(value, hn::Set(kInt, low)));
+        greatest = hn::Min(greatest, hn::Add(value, hn::Set(kInt, high)));
+      }
+      outside |= bits(hn::Lt(greatest, hn::Zero(kInt))) << v;
+      across |= bits(hn::Lt(least, hn::Zero(kInt))) << v;
+      const Floats there = hn::Load(kFloat, buffer_.least.data() + block_i * kBlocksAcross + v);
+      nearer |= bits(hn::RebindMask(kInt, hn::Gt(lanes.greatest, there))) << v;
+    }
+    const std::uint32_t in_box = ((1U << (last_j - first_j + 1)) - 1) << first_j;
+    const std::uint32_t touched = in_box & ~outside;
+    outcome.hidden |= (touched & ~nearer) != 0;
+    if constexpr (kCut) across = 0xFFFFFFFF;
+    for (std::uint32_t left = touched & nearer; left != 0; left &= left - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(left));
+      const float u = row_u + step_x * static_cast<float>(static_cast<std::int32_t>(j) - first_j);
+      const std::size_t block = static_cast<std::size_t>(block_i) * kBlocksAcross + j;
+      if ((across >> j & 1) != 0) {
+        outcome.covers |=
+            drawBlock<false, kCut>(lanes, at_block[0][j], at_block[1][j], at_block[2][j], u, block);
+      } else {
+        outcome.covers = true;
+        drawBlock<true, kCut>(lanes, 0, 0, 0, u, block);
       }
     }
   }
@@ -290,57 +351,56 @@ class TileRasterizer {
     std::memcpy(&result, bytes, 4);
     return result;
   }
-  static HWY_INLINE std::uint32_t floatBits(hn::Mask<FloatTag> mask) {
-    return bits(hn::RebindMask(kInt, mask));
-  }
 
-  // `kFull`: all samples of the block are inside.
-  template <bool kFull>
-  HWY_INLINE void drawBlock(const Lanes& lanes, const std::int32_t (&corner)[3], std::int32_t block_j,
-                            std::int32_t block_i) {
-    const auto block = static_cast<std::size_t>(block_i * kBlocksAcross + block_j);
+  // `kFull`: all samples of the block are inside. `u`: 1/U at the block's first pixel. True if it covers a
+  // sample.
+  template <bool kFull, bool kCut>
+  HWY_INLINE bool drawBlock(const Lanes& lanes, std::int32_t e0, std::int32_t e1, std::int32_t e2, float u,
+                            std::size_t block) {
     float* const depth = buffer_.inverse_u.data() + block * kBlockPixels;
-    std::uint32_t* const owner = buffer_.triangle.data() + block * kBlockPixels;
-    const float dx = origin_x_ + static_cast<float>(block_j * kBlockSide) - lanes.anchor_x;
-    const float dy = origin_y_ + static_cast<float>(block_i * kBlockSide) - lanes.anchor_y;
-    const Floats base = hn::Set(kFloat, lanes.value + (lanes.gradient_x * dx + lanes.gradient_y * dy));
-    const int columns = columns_ - block_j * kBlockSide, rows = rows_ - block_i * kBlockSide;
-    bool wrote = false;
-    Floats least = hn::Set(kFloat, 3.4e38F);
+    const Floats first = hn::Set(kFloat, u);
+    const Ints one = hn::Set(kInt, 1);
+    hn::Mask<IntTag> pass[kVectors];
+    Floats now[kVectors];
+    auto any_covered = hn::FirstN(kInt, 0), any_pass = any_covered;
+    auto all_pass = hn::FirstN(kInt, kLanes);
     for (std::size_t v = 0; v < kVectors; ++v) {
       auto covered = hn::FirstN(kInt, kLanes);
       if constexpr (!kFull) {
-        const Ints e0 = hn::Add(hn::Set(kInt, corner[0]), lanes.edge[0][v]);
-        const Ints e1 = hn::Add(hn::Set(kInt, corner[1]), lanes.edge[1][v]);
-        const Ints e2 = hn::Add(hn::Set(kInt, corner[2]), lanes.edge[2][v]);
-        covered = hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(kInt, -1));
-        if (columns < kBlockSide || rows < kBlockSide) {
-          covered =
-              hn::And(covered, hn::And(hn::Lt(hn::Load(kInt, kLaneJ + v * kLanes), hn::Set(kInt, columns)),
-                                       hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows))));
+        const Ints inside = hn::Or(hn::Or(hn::Add(hn::Set(kInt, e0), lanes.edge[0][v]),
+                                          hn::Add(hn::Set(kInt, e1), lanes.edge[1][v])),
+                                   hn::Add(hn::Set(kInt, e2), lanes.edge[2][v]));
+        covered = hn::Gt(inside, hn::Set(kInt, -1));
+        if constexpr (kCut) {
+          const auto block_j = static_cast<std::int32_t>(block % kBlocksAcross),
+                     block_i = static_cast<std::int32_t>(block / kBlocksAcross);
+          covered = hn::And(
+              covered,
+              hn::And(
+                  hn::Lt(hn::Load(kInt, kLaneJ + v * kLanes), hn::Set(kInt, columns_ - block_j * kBlockSide)),
+                  hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows_ - block_i * kBlockSide))));
         }
+        any_covered = hn::Or(any_covered, covered);
       }
-      const std::size_t tested = hn::CountTrue(kInt, covered);
+      tested_ = hn::Add(tested_, hn::IfThenElseZero(covered, one));
       const Floats old = hn::Load(kFloat, depth + v * kLanes);
-      if (tested == 0) {
-        least = hn::Min(least, old);
-        continue;
-      }
-      covers_ = true;
-      counts_.tested += tested;
-      const Floats value = hn::Min(hn::Max(hn::Add(base, lanes.inverse_u[v]), lanes.least), lanes.greatest);
-      const auto pass = hn::And(hn::RebindMask(kFloat, covered), hn::Gt(value, old));
-      const std::size_t written = hn::CountTrue(kFloat, pass);
-      const Floats now = hn::IfThenElse(pass, value, old);
-      least = hn::Min(least, now);
-      if (written == 0) continue;
-      wrote = true;
-      counts_.written += written;
-      hn::Store(now, kFloat, depth + v * kLanes);
-      hn::BlendedStore(lanes.number, hn::RebindMask(kInt, pass), kInt,
-                       reinterpret_cast<std::int32_t*>(owner) + v * kLanes);
+      const Floats value = hn::Min(hn::Max(hn::Add(first, lanes.inverse_u[v]), lanes.least), lanes.greatest);
+      pass[v] = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
+      now[v] = hn::IfThenElse(hn::RebindMask(kFloat, pass[v]), value, old);
+      any_pass = hn::Or(any_pass, pass[v]);
+      all_pass = hn::And(all_pass, pass[v]);
     }
-    if (wrote) buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, least));
+    if (hn::AllFalse(kInt, any_pass)) return kFull || !hn::AllFalse(kInt, any_covered);
+    auto* const owner = reinterpret_cast<std::int32_t*>(buffer_.triangle.data()) + block * kBlockPixels;
+    Floats least = now[0];
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      written_ = hn::Add(written_, hn::IfThenElseZero(pass[v], one));
+      hn::Store(now[v], kFloat, depth + v * kLanes);
+      least = hn::Min(least, now[v]);
+      hn::BlendedStore(lanes.number, pass[v], kInt, owner + v * kLanes);
+    }
+    buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, least));
+    return true;
   }
 
   // Triangles at least this many blocks wider than one are tested a row of blocks at a time.
@@ -349,10 +409,8 @@ class TileRasterizer {
   const Tile& tile_;
   TileBuffer& buffer_;
   TileCounts& counts_;
-  const float origin_x_, origin_y_;  // of the tile's first pixel, from the picture's centre
-  const int columns_, rows_;         // of the tile that lie in the picture
-  bool covers_ = false, hidden_ = false;
-  SetUpBatch batch_;
+  const int columns_, rows_;  // of the tile that lie in the picture
+  Ints tested_, written_;     // a lane each
 };
 
 void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles,
