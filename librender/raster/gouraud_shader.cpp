@@ -3,7 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/gouraud_shader.cpp"
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstring>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -85,6 +85,14 @@ HWY_INLINE Ints shade(const ShadingPlanes& p, Floats x, Floats y, Floats u) {
                 hn::Or(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(0xFF000000U))));
 }
 
+HWY_INLINE std::uint32_t bits(hn::Mask<IntTag> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kInt, mask, bytes);
+  std::uint32_t result = 0;
+  std::memcpy(&result, bytes, 4);
+  return result;
+}
+
 // One row of pixels out of a row of blocks.
 template <typename T>
 HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
@@ -102,13 +110,16 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   scratch.slot.assign(triangles.size(), kNoTriangle);
   scratch.planes.clear();
   // Set-up is made when a triangle is first met.
-  const auto planes_of = [&](std::int32_t triangle) -> const ShadingPlanes& {
+  const auto slot_of = [&](std::int32_t triangle) {
     std::uint32_t& slot = scratch.slot[static_cast<std::size_t>(triangle)];
     if (slot == kNoTriangle) {
       slot = static_cast<std::uint32_t>(scratch.planes.size());
       setUp(*triangles[static_cast<std::size_t>(triangle)], scratch.planes.emplace_back());
     }
-    return scratch.planes[slot];
+    return slot;
+  };
+  const auto planes_of = [&](std::int32_t triangle) -> const ShadingPlanes& {
+    return scratch.planes[slot_of(triangle)];
   };
 
   const float origin_x = static_cast<float>(tile.j * kTileSide) - static_cast<float>(tile.width - 1) * 0.5F;
@@ -122,25 +133,38 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
     const auto first_of_row = static_cast<std::size_t>(block_i) * kBlocksAcross * kBlockPixels;
     const float* const depth = buffer.inverse_u.data() + first_of_row;
     const auto* const owner = reinterpret_cast<const std::int32_t*>(buffer.triangle.data()) + first_of_row;
-    for (std::size_t n = 0; n < kBlocksAcross * kBlockPixels; n += kLanes) {
-      const Floats inverse_u = hn::Load(kFloat, depth + n);
-      Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
-      auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
-      if (!hn::AllFalse(kInt, left)) {
-        const std::size_t v = n % kBlockPixels;
-        const Ints owners = hn::Load(kInt, owner + n);
-        const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(n / kBlockPixels * kBlockSide));
+    for (std::size_t block = 0; block < kBlocksAcross; ++block) {
+      const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block * kBlockSide));
+      const std::uint32_t whole = buffer.whole[static_cast<std::size_t>(block_i) * kBlocksAcross + block];
+      const ShadingPlanes* const of_whole =
+          whole == kNoTriangle ? nullptr : &planes_of(static_cast<std::int32_t>(whole));
+      for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
+        const std::size_t n = block * kBlockPixels + v;
+        const Floats inverse_u = hn::Load(kFloat, depth + n);
         const Floats x = hn::Add(block_x, hn::Load(kFloat, kShadeLaneJ + v));
         const Floats y = hn::Add(block_y, hn::Load(kFloat, kShadeLaneI + v));
         const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
-        do {
-          const std::int32_t triangle = owner[n + static_cast<std::size_t>(hn::FindFirstTrue(kInt, left))];
-          const auto own = hn::And(left, hn::Eq(owners, hn::Set(kInt, triangle)));
-          result = hn::IfThenElse(own, shade(planes_of(triangle), x, y, u), result);
-          left = hn::AndNot(own, left);
-        } while (!hn::AllFalse(kInt, left));
+        if (of_whole != nullptr) {
+          hn::Store(shade(*of_whole, x, y, u), kInt, color + n);
+          continue;
+        }
+        Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
+        const Ints owners = hn::Load(kInt, owner + n);
+        auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
+        while (!hn::AllFalse(kInt, left)) {
+          // The first and the last: most blocks show two.
+          const std::uint32_t lanes = bits(left);
+          const std::int32_t first = owner[n + static_cast<std::size_t>(std::countr_zero(lanes))];
+          const std::int32_t last = owner[n + static_cast<std::size_t>(std::bit_width(lanes)) - 1];
+          const auto of_first = hn::And(left, hn::Eq(owners, hn::Set(kInt, first)));
+          const auto of_last = hn::And(left, hn::Eq(owners, hn::Set(kInt, last)));
+          const std::uint32_t first_slot = slot_of(first), last_slot = slot_of(last);
+          result = hn::IfThenElse(of_first, shade(scratch.planes[first_slot], x, y, u), result);
+          result = hn::IfThenElse(of_last, shade(scratch.planes[last_slot], x, y, u), result);
+          left = hn::AndNot(hn::Or(of_first, of_last), left);
+        }
+        hn::Store(result, kInt, color + n);
       }
-      hn::Store(result, kInt, color + n);
     }
     const int height = std::min(kBlockSide, rows - block_i * kBlockSide);
     for (int i = 0; i < height; ++i) {

@@ -11,13 +11,15 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "librender/raster/raster_triangle.h"
+
 namespace deltaz {
 
 // A snapped coordinate of a vertex that is not in front of the hither plane; both of its coordinates have it.
 inline constexpr std::int32_t kBeforeHitherCoordinate = 1 << 25;
 // Coordinates at least this far from the picture's centre are those of vertices outside the guard band, cut
 // off at it.
-inline constexpr std::int32_t kGuardCoordinate = 1 << 22;
+inline constexpr std::int32_t kGuardCoordinate = kGuardBand * kSubPixels;
 
 // Readable vertices behind the last one of a row.
 inline constexpr std::size_t kRowPadding = 16;

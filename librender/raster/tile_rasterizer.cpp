@@ -6,8 +6,8 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <numeric>
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kBatch = 16;
 // constant >= 0 for the samples inside; the third one's gradient is what brings the sum of the three to zero.
 struct alignas(64) SetUpBatch {
   std::int32_t per_j[2][kBatch], per_i[2][kBatch];
-  std::int32_t at_origin[3][kBatch];  // at the tile's first pixel
+  std::int32_t at_first_block[3][kBatch];  // constant at the first pixel of the first block
   // Blocks of the tile that the bounding box touches, first_j | first_i << 8 | last_j << 16 | last_i << 24; a
   // first that is greater than the last if there are none.
   std::uint32_t blocks[kBatch];
@@ -137,6 +137,7 @@ class TileRasterizer {
     alignas(64) float x[3][kBatch], y[3][kBatch], w[3][kBatch];
     alignas(64) std::int32_t snapped_x[3][kBatch], snapped_y[3][kBatch];
     alignas(64) float first_x[kBatch], first_y[kBatch];
+    alignas(64) std::int32_t first_column[kBatch], first_row[kBatch], at_origin[3][kBatch];
     const std::int32_t tile_x = tile_.j * kTileSide, tile_y = tile_.i * kTileSide;
     for (std::size_t t = 0; t < kBatch; t += kLanes) {
       // Snapped coordinates from the tile's first pixel.
@@ -176,6 +177,8 @@ class TileRasterizer {
                                  hn::Or(hn::ShiftLeft<16>(last_j), hn::ShiftLeft<24>(last_i)));
       hn::Store(hn::IfThenElse(none, hn::Set(kInt, 1), packed), kInt,
                 reinterpret_cast<std::int32_t*>(batch.blocks) + t);
+      hn::Store(hn::ShiftLeft<2>(first_j), kInt, first_column + t);
+      hn::Store(hn::ShiftLeft<2>(first_i), kInt, first_row + t);
       const Floats centre_x =
           hn::Set(kFloat, static_cast<float>(tile_x) - static_cast<float>(tile_.width - 1) * 0.5F);
       const Floats centre_y =
@@ -201,11 +204,11 @@ class TileRasterizer {
         // "at least zero" after subtracting one. Samples lie 256 units apart, so a 256th, rounded down, has
         // their sign.
         const auto keeps = hn::Or(hn::Gt(per_j, zero), hn::And(hn::Eq(per_j, zero), hn::Gt(per_i, zero)));
-        const auto at_origin = hn::Sub(hn::Neg(hn::Add(hn::Mul(per_j, vx), hn::Mul(per_i, vy))),
-                                       hn::IfThenElse(keeps, zero, one));
-        const auto scaled = hn::Floor(hn::Mul(at_origin, hn::Set(d, 1.0 / kSubPixels)));
+        const auto constant = hn::Sub(hn::Neg(hn::Add(hn::Mul(per_j, vx), hn::Mul(per_i, vy))),
+                                      hn::IfThenElse(keeps, zero, one));
+        const auto scaled = hn::Floor(hn::Mul(constant, hn::Set(d, 1.0 / kSubPixels)));
         const auto limited = hn::Min(hn::Max(scaled, hn::Set(d, -kSaturation)), hn::Set(d, kSaturation));
-        hn::Store(hn::DemoteTo(half_int, limited), half_int, batch.at_origin[k] + t);
+        hn::Store(hn::DemoteTo(half_int, limited), half_int, at_origin[k] + t);
       }
       const auto at = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
       const auto x0 = at(x[0]), y0 = at(y[0]), w0 = at(w[0]);
@@ -223,6 +226,19 @@ class TileRasterizer {
       hn::Store(hn::DemoteTo(half_float, gradient_x), half_float, batch.gradient_x + t);
       hn::Store(hn::DemoteTo(half_float, gradient_y), half_float, batch.gradient_y + t);
       hn::Store(hn::DemoteTo(half_float, at_first), half_float, batch.at_first + t);
+    }
+    for (std::size_t t = 0; t < kBatch; t += kLanes) {
+      const Ints column = hn::Load(kInt, first_column + t), row = hn::Load(kInt, first_row + t);
+      Ints sum_j = hn::Zero(kInt), sum_i = sum_j;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Ints per_j = k < 2 ? hn::Load(kInt, batch.per_j[k < 2 ? k : 0] + t) : hn::Neg(sum_j);
+        const Ints per_i = k < 2 ? hn::Load(kInt, batch.per_i[k < 2 ? k : 0] + t) : hn::Neg(sum_i);
+        sum_j = hn::Add(sum_j, per_j);
+        sum_i = hn::Add(sum_i, per_i);
+        hn::Store(
+            hn::Add(hn::Load(kInt, at_origin[k] + t), hn::Add(hn::Mul(per_j, column), hn::Mul(per_i, row))),
+            kInt, batch.at_first_block[k] + t);
+      }
     }
   }
 
@@ -266,7 +282,7 @@ class TileRasterizer {
     if (last_j - first_j >= kWide) {
       std::int32_t corner[3];
       for (std::size_t k = 0; k < 3; ++k)
-        corner[k] = batch.at_origin[k][t] + per_i[k] * (first_i * kBlockSide);
+        corner[k] = batch.at_first_block[k][t] - per_j[k] * (first_j * kBlockSide);
       for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
         drawWideRow<kCut>(lanes, per_j, per_i, corner,
                           batch.at_first[t] + step_y * static_cast<float>(block_i - first_i), step_x, first_j,
@@ -275,9 +291,8 @@ class TileRasterizer {
       }
       return outcome;
     }
-    std::int32_t row[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      row[k] = batch.at_origin[k][t] + per_j[k] * (first_j * kBlockSide) + per_i[k] * (first_i * kBlockSide);
+    std::int32_t row[3] = {batch.at_first_block[0][t], batch.at_first_block[1][t],
+                           batch.at_first_block[2][t]};
     const float greatest = batch.greatest[t];
     for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
       const float row_u = batch.at_first[t] + step_y * static_cast<float>(block_i - first_i);
@@ -391,13 +406,24 @@ class TileRasterizer {
       all_pass = hn::And(all_pass, pass[v]);
     }
     if (hn::AllFalse(kInt, any_pass)) return kFull || !hn::AllFalse(kInt, any_covered);
-    auto* const owner = reinterpret_cast<std::int32_t*>(buffer_.triangle.data()) + block * kBlockPixels;
     Floats least = now[0];
     for (std::size_t v = 0; v < kVectors; ++v) {
       written_ = hn::Add(written_, hn::IfThenElseZero(pass[v], one));
       hn::Store(now[v], kFloat, depth + v * kLanes);
       least = hn::Min(least, now[v]);
-      hn::BlendedStore(lanes.number, pass[v], kInt, owner + v * kLanes);
+    }
+    auto* const owner = reinterpret_cast<std::int32_t*>(buffer_.triangle.data()) + block * kBlockPixels;
+    std::uint32_t& whole = buffer_.whole[block];
+    if (kFull && hn::AllTrue(kInt, all_pass)) {
+      whole = static_cast<std::uint32_t>(hn::GetLane(lanes.number));
+    } else {
+      if (whole != kNoTriangle) {
+        for (std::size_t v = 0; v < kVectors; ++v)
+          hn::Store(hn::Set(kInt, static_cast<std::int32_t>(whole)), kInt, owner + v * kLanes);
+        whole = kNoTriangle;
+      }
+      for (std::size_t v = 0; v < kVectors; ++v)
+        hn::BlendedStore(lanes.number, pass[v], kInt, owner + v * kLanes);
     }
     buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, least));
     return true;
@@ -431,6 +457,7 @@ HWY_EXPORT(rasterize);
 
 void TileBuffer::clear() {
   inverse_u.fill(0);
+  whole.fill(kNoTriangle);
   least.fill(0);
 }
 

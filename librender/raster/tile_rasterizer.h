@@ -31,8 +31,11 @@ inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 struct alignas(64) TileBuffer {
   // Block by block, rows of blocks from the top; within a block row by row.
   std::array<float, kTileSide * kTileSide> inverse_u;  // 0 where nothing is seen
-  std::array<std::uint32_t, kTileSide * kTileSide>
-      triangle;  // index into the tile's triangles, where one is seen
+  // Index into the tile's triangles of the one seen, where one is; only of blocks that are not one
+  // triangle's.
+  std::array<std::uint32_t, kTileSide * kTileSide> triangle;
+  std::array<std::uint32_t, kBlocksAcross * kBlocksAcross>
+      whole;  // of a block that is one triangle's, or kNoTriangle
   std::array<float, kBlocksAcross * kBlocksAcross> least;  // of a block's 1/U; never too great
 
   void clear();
