@@ -27,11 +27,10 @@ HWY_INLINE Range joined(Range range, Vec value) {
   return {hn::Min(range.least, value), hn::Max(range.greatest, value)};
 }
 
-class RowCuller {
+class FaceCuller {
  public:
-  RowCuller(const GridRow& row, int width, int height)
-      : row_(row),
-        last_x_(hn::Set(d_, (width - 1) * kSubPixels)),
+  FaceCuller(int width, int height)
+      : last_x_(hn::Set(d_, (width - 1) * kSubPixels)),
         last_y_(hn::Set(d_, (height - 1) * kSubPixels)),
         guard_low_x_(hn::Set(d_, (width - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
         guard_low_y_(hn::Set(d_, (height - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
@@ -39,17 +38,17 @@ class RowCuller {
         guard_high_y_(hn::Set(d_, (height - 1) * (kSubPixels / 2) + kGuardCoordinate - 1)) {}
 
   // Bottom faces to the front of `out`, top faces to the front of `top`.
-  void run(CulledFaces& out, CulledFaces& top, CullCounts& counts) {
+  void cullRow(const GridRow& row, CulledFaces& out, CulledFaces& top, CullCounts& counts) const {
     const std::size_t lanes = hn::Lanes(d_);
-    for (std::size_t cell = 0; cell < row_.cells; cell += lanes) {
-      const Vec sw_x = hn::LoadU(d_, row_.south_x + cell), sw_y = hn::LoadU(d_, row_.south_y + cell);
-      const Vec se_x = hn::LoadU(d_, row_.south_x + cell + 1), se_y = hn::LoadU(d_, row_.south_y + cell + 1);
-      const Vec nw_x = hn::LoadU(d_, row_.north_x + cell), nw_y = hn::LoadU(d_, row_.north_y + cell);
-      const Vec ne_x = hn::LoadU(d_, row_.north_x + cell + 1), ne_y = hn::LoadU(d_, row_.north_y + cell + 1);
-      Mask bottom_in = hn::FirstN(d_, row_.cells - cell), top_in = bottom_in;
-      if (row_.drawn != nullptr) {
+    for (std::size_t cell = 0; cell < row.cells; cell += lanes) {
+      const Vec sw_x = hn::LoadU(d_, row.south_x + cell), sw_y = hn::LoadU(d_, row.south_y + cell);
+      const Vec se_x = hn::LoadU(d_, row.south_x + cell + 1), se_y = hn::LoadU(d_, row.south_y + cell + 1);
+      const Vec nw_x = hn::LoadU(d_, row.north_x + cell), nw_y = hn::LoadU(d_, row.north_y + cell);
+      const Vec ne_x = hn::LoadU(d_, row.north_x + cell + 1), ne_y = hn::LoadU(d_, row.north_y + cell + 1);
+      Mask bottom_in = hn::FirstN(d_, row.cells - cell), top_in = bottom_in;
+      if (row.drawn != nullptr) {
         const hn::Rebind<std::uint8_t, Tag> bytes;
-        const Vec drawn = hn::PromoteTo(d_, hn::LoadU(bytes, row_.drawn + cell));
+        const Vec drawn = hn::PromoteTo(d_, hn::LoadU(bytes, row.drawn + cell));
         bottom_in = hn::And(bottom_in, hn::TestBit(drawn, hn::Set(d_, 1)));
         top_in = hn::And(top_in, hn::TestBit(drawn, hn::Set(d_, 2)));
       }
@@ -66,15 +65,36 @@ class RowCuller {
         continue;
       }
       const Vec along_x = hn::Sub(ne_x, sw_x), along_y = hn::Sub(ne_y, sw_y);
-      const auto cell_number = static_cast<std::int32_t>(cell);
+      const Vec face = hn::Iota(d_, static_cast<std::int32_t>(cell));
+      const Vec bottom_face = hn::Add(face, face);
       // Twice the area, positive for clockwise on the screen: bottom (SW, NE, SE), top (SW, NW, NE).
       const Vec bottom_area =
           hn::Sub(hn::Mul(along_x, hn::Sub(se_y, sw_y)), hn::Mul(hn::Sub(se_x, sw_x), along_y));
       const Vec top_area =
           hn::Sub(hn::Mul(hn::Sub(nw_x, sw_x), along_y), hn::Mul(along_x, hn::Sub(nw_y, sw_y)));
-      cull(joined(diagonal_x, se_x), joined(diagonal_y, se_y), bottom_area, bottom_in, cell_number, 0, out,
+      cull(joined(diagonal_x, se_x), joined(diagonal_y, se_y), bottom_area, bottom_in, bottom_face, out,
            counts);
-      cull(joined(diagonal_x, nw_x), joined(diagonal_y, nw_y), top_area, top_in, cell_number, 1, top, counts);
+      cull(joined(diagonal_x, nw_x), joined(diagonal_y, nw_y), top_area, top_in,
+           hn::Add(bottom_face, hn::Set(d_, 1)), top, counts);
+    }
+  }
+
+  void cullIndexed(const IndexedFaces& faces, CulledFaces& out, CullCounts& counts) const {
+    const hn::Rebind<std::uint8_t, Tag> bytes;
+    for (std::size_t n = 0; n < faces.count; n += hn::Lanes(d_)) {
+      const Mask in = hn::FirstN(d_, faces.count - n);
+      const auto corner = [&](const std::uint8_t* index) {
+        return hn::IfThenElseZero(in, hn::PromoteTo(d_, hn::LoadU(bytes, index + n)));
+      };
+      const Vec a = corner(faces.first), b = corner(faces.second), c = corner(faces.third);
+      const Vec ax = hn::GatherIndex(d_, faces.snapped_x, a), ay = hn::GatherIndex(d_, faces.snapped_y, a);
+      const Vec bx = hn::GatherIndex(d_, faces.snapped_x, b), by = hn::GatherIndex(d_, faces.snapped_y, b);
+      const Vec cx = hn::GatherIndex(d_, faces.snapped_x, c), cy = hn::GatherIndex(d_, faces.snapped_y, c);
+      counts.in += hn::CountTrue(d_, in);
+      const Vec area =
+          hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)), hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
+      cull(joined({hn::Min(ax, bx), hn::Max(ax, bx)}, cx), joined({hn::Min(ay, by), hn::Max(ay, by)}, cy),
+           area, in, hn::Iota(d_, static_cast<std::int32_t>(n)), out, counts);
     }
   }
 
@@ -87,8 +107,8 @@ class RowCuller {
     return hn::Or(hn::And(beside, hn::Lt(x.greatest, hither)), hn::Eq(x.least, hither));
   }
 
-  HWY_INLINE void cull(Range x, Range y, Vec area, Mask in, std::int32_t cell, std::int32_t top,
-                       CulledFaces& out, CullCounts& counts) const {
+  HWY_INLINE void cull(Range x, Range y, Vec area, Mask in, Vec face, CulledFaces& out,
+                       CullCounts& counts) const {
     const Mask beside = hn::And(in, isBeside(x, y));
     const Vec limit = hn::Set(d_, (1 << 15) - 1);
     const Mask exceptional = hn::AndNot(
@@ -124,22 +144,23 @@ class RowCuller {
                hn::ShiftLeft<24>(hn::ShiftRight<kTileShift>(last_i))));
     const Vec tiles =
         hn::IfThenElse(exceptional, hn::Set(d_, static_cast<std::int32_t>(kExceptional)), range);
-    const Vec face = hn::Add(hn::Iota(d_, cell), hn::Iota(d_, cell));
     const hn::RebindToUnsigned<Tag> du;
     const auto kept_unsigned = hn::RebindMask(du, kept);
-    hn::CompressStore(hn::BitCast(du, hn::Or(face, hn::Set(d_, top))), kept_unsigned, du,
-                      out.face + out.count);
+    hn::CompressStore(hn::BitCast(du, face), kept_unsigned, du, out.face + out.count);
     out.count += hn::CompressStore(hn::BitCast(du, tiles), kept_unsigned, du, out.tiles + out.count);
   }
 
   const Tag d_;
-  const GridRow& row_;
   const Vec last_x_, last_y_, guard_low_x_, guard_low_y_, guard_high_x_, guard_high_y_;
 };
 
 void cullRow(const GridRow& row, int width, int height, CulledFaces& out, CulledFaces& top,
              CullCounts& counts) {
-  RowCuller(row, width, height).run(out, top, counts);
+  FaceCuller(width, height).cullRow(row, out, top, counts);
+}
+
+void cullIndexed(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
+  FaceCuller(width, height).cullIndexed(faces, out, counts);
 }
 
 }  // namespace
@@ -155,7 +176,8 @@ HWY_AFTER_NAMESPACE();
 namespace deltaz {
 namespace {
 HWY_EXPORT(cullRow);
-}
+HWY_EXPORT(cullIndexed);
+}  // namespace
 
 void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts) {
   out.count = 0;
@@ -166,6 +188,12 @@ void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, Cu
   std::copy_n(top.face, top.count, out.face + out.count);
   std::copy_n(top.tiles, top.count, out.tiles + out.count);
   out.count += top.count;
+}
+
+void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFaces& out,
+                      CullCounts& counts) {
+  out.count = 0;
+  HWY_DYNAMIC_DISPATCH(cullIndexed)(faces, width, height, out, counts);
 }
 
 }  // namespace deltaz

@@ -45,6 +45,16 @@ struct CullCounts {
   std::uint64_t in = 0, outside = 0, back_facing = 0, no_sample = 0;
 };
 
+// Faces of a small indexed mesh: the corners of face n are the vertices first[n], second[n] and third[n],
+// clockwise on the screen if it is seen from its front. Readable kRowPadding entries behind the last.
+struct IndexedFaces {
+  const std::uint8_t *first, *second, *third;
+  std::size_t count;
+  const std::int32_t *snapped_x, *snapped_y;  // of the vertices
+};
+// The same tests; CulledFaces::face is n, in ascending order. Room for count + kRowPadding entries.
+void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts);
+
 // Room for 2 * (cells + kRowPadding) entries in both lists. Adds to `counts`.
 void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts);
 

@@ -16,7 +16,7 @@ namespace {
 // Cells of a grid that are one item of work.
 constexpr int kItemColumns = 64, kItemRows = 32;
 constexpr std::size_t kMeshletVertices = 255, kMeshletTriangles = 255;
-constexpr std::size_t kMeshletsOfItem = 8;
+constexpr std::size_t kLeastMeshletsOfItem = 8, kMostItemsOfMesh = 256;
 
 struct Item {
   bool grid = true;
@@ -25,14 +25,28 @@ struct Item {
   int column = 0, row = 0, columns = 0, rows = 0;  // cells of a grid
 };
 
-// Room for one row of an item's vertices, or for a meshlet's.
-struct VertexRoom {
+// Room for a meshlet's vertices.
+struct MeshletRoom {
   static constexpr std::size_t kVertices = 256 + kRowPadding;
   alignas(64) std::array<RasterVertex, kVertices> vertex;
-  alignas(64) std::array<std::int32_t, kVertices> x, y;
-
-  ProjectedVertices out() { return {vertex.data(), x.data(), y.data()}; }
+  alignas(64) std::array<std::int32_t, kVertices> snapped_x, snapped_y;
 };
+
+// Room for one row of an item's vertices.
+struct RowRoom {
+  static constexpr std::size_t kVertices = kItemColumns + 1 + 2 * kRowPadding;
+  alignas(64) std::array<float, kVertices> x, y, inverse_u;
+  alignas(64) std::array<std::int32_t, kVertices> snapped_x, snapped_y;
+};
+
+TileRange unpacked(std::uint32_t range) {
+  return {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
+          static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)};
+}
+
+bool isOneTile(std::uint32_t range) {
+  return (range & 0xFFFF) == range >> 16;
+}
 
 void add(const CullCounts& culled, MeshCounts& counts) {
   counts.in += culled.in;
@@ -85,22 +99,21 @@ IndexedMesh::IndexedMesh(const MeshVertices& vertices,
     meshlets_.back().vertices =
         static_cast<std::uint32_t>(vertices_.x.size()) - meshlets_.back().first_vertex;
     meshlets_.back().triangles =
-        static_cast<std::uint32_t>(triangles_.size()) - meshlets_.back().first_triangle;
+        static_cast<std::uint32_t>(corners_[0].size()) - meshlets_.back().first_triangle;
   };
   const auto open = [&] {
     close();
     local.clear();
     meshlets_.push_back({static_cast<std::uint32_t>(vertices_.x.size()), 0,
-                         static_cast<std::uint32_t>(triangles_.size()), 0});
+                         static_cast<std::uint32_t>(corners_[0].size()), 0});
   };
   for (const std::array<std::uint32_t, 3>& triangle : triangles) {
     if (meshlets_.empty() || local.size() + 3 > kMeshletVertices ||
-        triangles_.size() - meshlets_.back().first_triangle == kMeshletTriangles)
+        corners_[0].size() - meshlets_.back().first_triangle == kMeshletTriangles)
       open();
-    std::array<std::uint8_t, 3>& corners = triangles_.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [found, is_new] = local.try_emplace(triangle[k], static_cast<std::uint8_t>(local.size()));
-      corners[k] = found->second;
+      corners_[k].push_back(found->second);
       if (is_new)
         vertices_.append(vertices.x[triangle[k]], vertices.y[triangle[k]], vertices.z[triangle[k]],
                          vertices.rgba[triangle[k]]);
@@ -108,11 +121,13 @@ IndexedMesh::IndexedMesh(const MeshVertices& vertices,
   }
   close();
   vertices_.pad();
+  for (std::vector<std::uint8_t>& corners : corners_) corners.resize(corners.size() + kRowPadding);
 }
 
 struct MeshRenderer::Worker {
-  VertexRoom room[2];
-  std::array<std::uint32_t, 2 * (kItemColumns + kRowPadding)> face, tiles;
+  RowRoom rows[2];
+  MeshletRoom meshlet_room;
+  std::array<std::uint32_t, 2 * (kMeshletTriangles + kRowPadding)> face, tiles;
   MeshCounts counts;
   TileBuffer buffer;
   TileCounts tile_counts;
@@ -126,8 +141,7 @@ struct MeshRenderer::Worker {
                     const Item& item, TileBins::Writer& writer);
   // A face the integer tests could not decide.
   void drawCarefully(const ViewTransform& view, const MeshVertices& vertices,
-                     const std::array<std::size_t, 3>& corners, RasterTriangle& triangle,
-                     TileBins::Writer& writer);
+                     const std::array<std::size_t, 3>& corners, TileBins::Writer& writer);
 };
 
 MeshRenderer::MeshRenderer() = default;
@@ -139,45 +153,56 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
   const auto first_of = [&](int row) {
     return static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(item.column);
   };
-  const auto project = [&](int row, VertexRoom& room_of_row) {
+  const auto project = [&](int row, RowRoom& room) {
     const std::size_t first = first_of(row);
     const MeshVertices& v = mesh.vertices;
-    projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first, v.rgba.data() + first,
-                       static_cast<std::size_t>(item.columns) + 1, room_of_row.out());
+    projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first,
+                       static_cast<std::size_t>(item.columns) + 1,
+                       ProjectedArrays{room.x.data(), room.y.data(), room.inverse_u.data(),
+                                       room.snapped_x.data(), room.snapped_y.data()});
   };
-  VertexRoom *south = &room[0], *north = &room[1];
+  RowRoom *south = &rows[0], *north = &rows[1];
   project(item.row, *south);
   CullCounts culled;
-  RasterTriangle triangle;
-  triangle.node = triangle.clipped = 0;
   for (int row = item.row; row < item.row + item.rows; ++row) {
     project(row + 1, *north);
-    const GridRow cells{south->x.data(),
-                        south->y.data(),
-                        north->x.data(),
-                        north->y.data(),
+    const GridRow cells{south->snapped_x.data(),
+                        south->snapped_y.data(),
+                        north->snapped_x.data(),
+                        north->snapped_y.data(),
                         static_cast<std::size_t>(item.columns),
                         nullptr};
     CulledFaces faces{face.data(), tiles.data(), 0};
     cullGridRow(cells, view.width, view.height, faces, culled);
+    const std::uint32_t *const south_color = mesh.vertices.rgba.data() + first_of(row), *const north_color =
+                                                                                            south_color +
+                                                                                            columns;
+    const auto southern = [&](std::size_t n) {
+      return RasterVertex{south->x[n], south->y[n], south->inverse_u[n], south_color[n]};
+    };
+    const auto northern = [&](std::size_t n) {
+      return RasterVertex{north->x[n], north->y[n], north->inverse_u[n], north_color[n]};
+    };
     for (std::size_t n = 0; n < faces.count; ++n) {
-      const std::uint32_t cell = faces.face[n] >> 1;
+      const std::uint32_t cell = faces.face[n] >> 1, range = faces.tiles[n];
       const bool top = (faces.face[n] & 1) != 0;
-      if (faces.tiles[n] == kExceptional) {
+      if (range == kExceptional) {
         const std::size_t south_west = first_of(row) + cell, north_west = south_west + columns;
         drawCarefully(view, mesh.vertices,
                       {south_west, top ? north_west : north_west + 1, top ? north_west + 1 : south_west + 1},
-                      triangle, writer);
+                      writer);
         continue;
       }
-      triangle.vertex[0] = south->vertex[cell];
-      triangle.vertex[1] = top ? north->vertex[cell] : north->vertex[cell + 1];
-      triangle.vertex[2] = top ? north->vertex[cell + 1] : south->vertex[cell + 1];
+      RasterTriangle several;
+      RasterTriangle& triangle = isOneTile(range) ? writer.add(static_cast<std::int32_t>(range & 0xFF),
+                                                               static_cast<std::int32_t>(range >> 8 & 0xFF))
+                                                  : several;
+      triangle.vertex[0] = southern(cell);
+      triangle.vertex[1] = northern(top ? cell : cell + 1);
+      triangle.vertex[2] = top ? northern(cell + 1) : southern(cell + 1);
+      triangle.node = triangle.clipped = 0;
       triangle.face = faces.face[n];
-      const std::uint32_t range = faces.tiles[n];
-      writer.add(triangle,
-                 {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
-                  static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)});
+      if (!isOneTile(range)) writer.add(triangle, unpacked(range));
     }
     std::swap(south, north);
   }
@@ -186,55 +211,45 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
 
 void MeshRenderer::Worker::drawMeshlets(const ViewTransform& view, const MeshProjection& projection,
                                         const IndexedMesh& mesh, const Item& item, TileBins::Writer& writer) {
-  RasterTriangle triangle;
-  triangle.node = triangle.clipped = 0;
   const MeshVertices& v = mesh.vertices();
+  const MeshletRoom& room = meshlet_room;
+  CullCounts culled;
   for (std::uint32_t m = item.first; m < item.first + item.count; ++m) {
     const IndexedMesh::Meshlet& meshlet = mesh.meshlets()[m];
     const std::size_t first = meshlet.first_vertex;
-    projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first, v.rgba.data() + first,
-                       meshlet.vertices, room[0].out());
-    counts.in += meshlet.triangles;
-    for (std::uint32_t t = meshlet.first_triangle; t < meshlet.first_triangle + meshlet.triangles; ++t) {
-      // Counter-clockwise seen from the front runs clockwise on the screen in the opposite order.
-      const std::size_t a = mesh.triangles()[t][0], b = mesh.triangles()[t][2], c = mesh.triangles()[t][1];
-      const std::array<std::int32_t, 3> x = {room[0].x[a], room[0].x[b], room[0].x[c]};
-      const std::array<std::int32_t, 3> y = {room[0].y[a], room[0].y[b], room[0].y[c]};
-      const std::int32_t centre_x = (view.width - 1) * (kSubPixels / 2),
-                         centre_y = (view.height - 1) * (kSubPixels / 2);
-      bool in_guard_band = true;
-      for (std::size_t k = 0; k < 3; ++k)
-        in_guard_band &=
-            std::abs(x[k] - centre_x) < kGuardCoordinate && std::abs(y[k] - centre_y) < kGuardCoordinate;
-      if (!in_guard_band) {
-        drawCarefully(view, v, {first + a, first + b, first + c}, triangle, writer);
+    projection.project(
+        v.x.data() + first, v.y.data() + first, v.z.data() + first, v.rgba.data() + first, meshlet.vertices,
+        {meshlet_room.vertex.data(), meshlet_room.snapped_x.data(), meshlet_room.snapped_y.data()});
+    // Counter-clockwise seen from the front runs clockwise on the screen in the opposite order.
+    const std::uint8_t *const a = mesh.corners(0).data() + meshlet.first_triangle,
+                              *const b = mesh.corners(2).data() + meshlet.first_triangle,
+                              *const c = mesh.corners(1).data() + meshlet.first_triangle;
+    CulledFaces faces{face.data(), tiles.data(), 0};
+    cullIndexedFaces({a, b, c, meshlet.triangles, room.snapped_x.data(), room.snapped_y.data()}, view.width,
+                     view.height, faces, culled);
+    for (std::size_t n = 0; n < faces.count; ++n) {
+      const std::uint32_t t = faces.face[n], range = faces.tiles[n];
+      if (range == kExceptional) {
+        drawCarefully(view, v, {first + a[t], first + b[t], first + c[t]}, writer);
         continue;
       }
-      const TrianglePlacement placed = placeTriangle(x, y, view.width, view.height);
-      switch (placed.fate) {
-        case TriangleFate::kOutside:
-          ++counts.outside;
-          break;
-        case TriangleFate::kBackFacing:
-          ++counts.back_facing;
-          break;
-        case TriangleFate::kNoSample:
-          ++counts.no_sample;
-          break;
-        case TriangleFate::kKept:
-          triangle.vertex[0] = room[0].vertex[a];
-          triangle.vertex[1] = room[0].vertex[b];
-          triangle.vertex[2] = room[0].vertex[c];
-          triangle.face = t;
-          writer.add(triangle, placed.tiles);
-          break;
-      }
+      RasterTriangle several;
+      RasterTriangle& triangle = isOneTile(range) ? writer.add(static_cast<std::int32_t>(range & 0xFF),
+                                                               static_cast<std::int32_t>(range >> 8 & 0xFF))
+                                                  : several;
+      triangle.vertex[0] = room.vertex[a[t]];
+      triangle.vertex[1] = room.vertex[b[t]];
+      triangle.vertex[2] = room.vertex[c[t]];
+      triangle.node = triangle.clipped = 0;
+      triangle.face = meshlet.first_triangle + t;
+      if (!isOneTile(range)) writer.add(triangle, unpacked(range));
     }
   }
+  add(culled, counts);
 }
 
 void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVertices& vertices,
-                                         const std::array<std::size_t, 3>& corners, RasterTriangle& triangle,
+                                         const std::array<std::size_t, 3>& corners,
                                          TileBins::Writer& writer) {
   std::array<Vector3, 3> positions;
   std::array<std::uint32_t, 3> colors{};
@@ -247,6 +262,8 @@ void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVe
     return;
   }
   const ClippedFace clipped = clipFace(positions);
+  RasterTriangle triangle;
+  triangle.node = triangle.face = triangle.clipped = 0;
   // Pieces of one face are counted by the worst that befell it.
   TriangleFate fate = TriangleFate::kOutside;
   std::uint64_t kept = 0;
@@ -288,9 +305,11 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   }
   for (std::uint32_t n = 0; n < meshes.size(); ++n) {
     const std::size_t count = meshes[n].meshlets().size();
-    for (std::size_t first = 0; first < count; first += kMeshletsOfItem)
+    const std::size_t of_item =
+        std::max(kLeastMeshletsOfItem, (count + kMostItemsOfMesh - 1) / kMostItemsOfMesh);
+    for (std::size_t first = 0; first < count; first += of_item)
       items.push_back({false, n, static_cast<std::uint32_t>(first),
-                       static_cast<std::uint32_t>(std::min(kMeshletsOfItem, count - first)), 0, 0, 0, 0});
+                       static_cast<std::uint32_t>(std::min(of_item, count - first)), 0, 0, 0, 0});
   }
 
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());

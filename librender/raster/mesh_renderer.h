@@ -49,13 +49,13 @@ class IndexedMesh {
   };
   const std::vector<Meshlet>& meshlets() const { return meshlets_; }
   const MeshVertices& vertices() const { return vertices_; }
-  // Vertex numbers within the meshlet.
-  std::span<const std::array<std::uint8_t, 3>> triangles() const { return triangles_; }
+  // Vertex numbers within the meshlet, of each triangle's first, second or third corner.
+  const std::vector<std::uint8_t>& corners(std::size_t k) const { return corners_[k]; }
 
  private:
   std::vector<Meshlet> meshlets_;
   MeshVertices vertices_;
-  std::vector<std::array<std::uint8_t, 3>> triangles_;
+  std::array<std::vector<std::uint8_t>, 3> corners_;  // with kRowPadding entries behind the last
 };
 
 struct MeshCounts {

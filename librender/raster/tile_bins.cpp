@@ -76,13 +76,15 @@ void TileBins::finish() {
 
 void TileBins::segmentsOf(std::size_t tile, std::vector<Segment>& segments) const {
   segments.clear();
+  const auto earlier = [](const Segment& a, const Segment& b) { return a.item < b.item; };
   for (const std::unique_ptr<Writer>& writer : writers_) {
     const std::vector<Segment>& own = writer->bins_[tile].segments;
-    segments.insert(segments.end(), own.begin(), own.end());
+    const auto middle = segments.insert(segments.end(), own.begin(), own.end());
+    // An item is one writer's, so that the order of its own runs is all there is to keep. Mostly a writer
+    // takes items as they come.
+    if (!std::is_sorted(middle, segments.end(), earlier)) std::stable_sort(middle, segments.end(), earlier);
+    std::inplace_merge(segments.begin(), middle, segments.end(), earlier);
   }
-  // An item is one writer's, so that the order of its own runs is all there is to keep.
-  std::stable_sort(segments.begin(), segments.end(),
-                   [](const Segment& a, const Segment& b) { return a.item < b.item; });
 }
 
 }  // namespace deltaz

@@ -38,6 +38,12 @@ class TileBins {
    public:
     // The triangles that follow belong to item `item`.
     void begin(std::uint32_t item) { item_ = item; }
+    // Room for a triangle that touches one tile only, to be filled in whole; its `crossing` is 0 already.
+    RasterTriangle& add(std::int32_t tile_j, std::int32_t tile_i) {
+      RasterTriangle& triangle = *next(bin(tile_j, tile_i));
+      triangle.crossing = 0;
+      return triangle;
+    }
     // Adds the triangle to every tile of the range, which lies within the picture.
     void add(RasterTriangle& triangle, const TileRange& tiles) {
       if (tiles.first_j == tiles.last_j && tiles.first_i == tiles.last_i) {

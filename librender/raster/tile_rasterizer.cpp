@@ -11,6 +11,8 @@
 #include <hwy/highway.h>
 #include <numeric>
 
+#include "librender/raster/rounding-inl.h"
+
 #ifndef DELTAZ_TILE_RASTERIZER_ONCE
 #define DELTAZ_TILE_RASTERIZER_ONCE
 namespace deltaz {
@@ -38,9 +40,10 @@ alignas(64) inline constexpr std::int32_t kLaneI[kBlockPixels] = {0, 0, 0, 0, 1,
 alignas(64) inline constexpr float kLaneX[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 alignas(64) inline constexpr float kLaneY[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-// Edge functions within a tile stay below this for triangles in the guard band; beyond it only their sign
-// counts.
+// Edge functions of triangles in the guard band change by less than this from one pixel of a tile to any other, or
+// to the block behind the last: where they start beyond it only their sign counts, and sums stay in 32 bits.
 inline constexpr double kSaturation = 1 << 30;
+static_assert(2 * 2.0 * kGuardBand * kSubPixels * (kTileSide + 2 * kBlockSide) < kSaturation);
 // Gradients of slivers that are lines but for rounding; products with distances stay finite.
 inline constexpr double kSteepest = 1e15;
 
@@ -152,8 +155,8 @@ class TileRasterizer {
         hn::Store(vx, kFloat, x[k] + t);
         hn::Store(vy, kFloat, y[k] + t);
         hn::Store(vw[k], kFloat, w[k] + t);
-        sx[k] = hn::Add(hn::NearestInt(hn::Mul(vx, scale)), offset_x);
-        sy[k] = hn::Add(hn::NearestInt(hn::Mul(vy, scale)), offset_y);
+        sx[k] = hn::Add(roundedInGuardBand(kFloat, hn::Mul(vx, scale)), offset_x);
+        sy[k] = hn::Add(roundedInGuardBand(kFloat, hn::Mul(vy, scale)), offset_y);
         hn::Store(sx[k], kInt, snapped_x[k] + t);
         hn::Store(sy[k], kInt, snapped_y[k] + t);
       }

@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "librender/raster/grid_culler.h"
+#include "librender/raster/rounding-inl.h"
 #include "librender/scene/view_volume.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,8 +16,8 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Snapped positions of vertices at (x, y) pixels from the centre; `before`: not in front of the hither plane.
-template <class D, class V, class M>
-HWY_INLINE void storeSnapped(D d, V x, V y, M before, int width, int height, const ProjectedVertices& out,
+template <class D, class V, class M, class Out>
+HWY_INLINE void storeSnapped(D d, V x, V y, M before, int width, int height, const Out& out,
                              std::size_t first) {
   const hn::RebindToSigned<D> di;
   const auto guard = hn::Set(d, static_cast<float>(kGuardBand)),
@@ -24,11 +25,33 @@ HWY_INLINE void storeSnapped(D d, V x, V y, M before, int width, int height, con
   const auto snapped = [&](V position, int extent) {
     const auto kept = hn::Min(hn::Max(position, hn::Neg(guard)), guard);
     const auto from_first_pixel =
-        hn::Add(hn::NearestInt(hn::Mul(kept, scale)), hn::Set(di, (extent - 1) * (kSubPixels / 2)));
+        hn::Add(roundedInGuardBand(d, hn::Mul(kept, scale)), hn::Set(di, (extent - 1) * (kSubPixels / 2)));
     return hn::IfThenElse(hn::RebindMask(di, before), hn::Set(di, kBeforeHitherCoordinate), from_first_pixel);
   };
   hn::StoreU(snapped(x, width), di, out.snapped_x + first);
   hn::StoreU(snapped(y, height), di, out.snapped_y + first);
+}
+
+template <class D>
+struct OnScreen {
+  hn::Vec<D> x, y, inverse_u;
+  hn::Mask<D> before;
+};
+
+template <class D>
+HWY_INLINE OnScreen<D> projected(D d, const MeshProjection& projection, const float* x, const float* y,
+                                 const float* z) {
+  const auto dx = hn::Sub(hn::LoadU(d, x), hn::Set(d, projection.eye[0]));
+  const auto dy = hn::Sub(hn::LoadU(d, y), hn::Set(d, projection.eye[1]));
+  const auto dz = hn::Sub(hn::LoadU(d, z), hn::Set(d, projection.eye[2]));
+  const auto along = [&](const float(&axis)[3]) {
+    return hn::Add(hn::Add(hn::Mul(dx, hn::Set(d, axis[0])), hn::Mul(dy, hn::Set(d, axis[1]))),
+                   hn::Mul(dz, hn::Set(d, axis[2])));
+  };
+  const auto u = along(projection.forward);
+  const auto inverse_u = hn::Div(hn::Set(d, 1.0F), u);
+  return {hn::Mul(along(projection.right), inverse_u), hn::Mul(along(projection.down), inverse_u), inverse_u,
+          hn::Lt(u, hn::Set(d, projection.hither))};
 }
 
 void projectMesh(const MeshProjection& projection, const float* x, const float* y, const float* z,
@@ -36,20 +59,22 @@ void projectMesh(const MeshProjection& projection, const float* x, const float* 
   const hn::CappedTag<float, 16> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
-    const auto dx = hn::Sub(hn::LoadU(d, x + n), hn::Set(d, projection.eye[0]));
-    const auto dy = hn::Sub(hn::LoadU(d, y + n), hn::Set(d, projection.eye[1]));
-    const auto dz = hn::Sub(hn::LoadU(d, z + n), hn::Set(d, projection.eye[2]));
-    const auto along = [&](const float(&axis)[3]) {
-      return hn::Add(hn::Add(hn::Mul(dx, hn::Set(d, axis[0])), hn::Mul(dy, hn::Set(d, axis[1]))),
-                     hn::Mul(dz, hn::Set(d, axis[2])));
-    };
-    const auto u = along(projection.forward), v = along(projection.right), w = along(projection.down);
-    const auto before = hn::Lt(u, hn::Set(d, projection.hither));
-    const auto inverse_u = hn::Div(hn::Set(d, 1.0F), u);
-    const auto sx = hn::Mul(v, inverse_u), sy = hn::Mul(w, inverse_u);
-    hn::StoreInterleaved4(sx, sy, inverse_u, hn::BitCast(d, hn::LoadU(du, payload + n)), d,
+    const auto at = projected(d, projection, x + n, y + n, z + n);
+    hn::StoreInterleaved4(at.x, at.y, at.inverse_u, hn::BitCast(d, hn::LoadU(du, payload + n)), d,
                           reinterpret_cast<float*>(out.vertex + n));
-    storeSnapped(d, sx, sy, before, projection.width, projection.height, out, n);
+    storeSnapped(d, at.x, at.y, at.before, projection.width, projection.height, out, n);
+  }
+}
+
+void projectArrays(const MeshProjection& projection, const float* x, const float* y, const float* z,
+                   std::size_t count, const ProjectedArrays& out) {
+  const hn::CappedTag<float, 16> d;
+  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
+    const auto at = projected(d, projection, x + n, y + n, z + n);
+    hn::StoreU(at.x, d, out.x + n);
+    hn::StoreU(at.y, d, out.y + n);
+    hn::StoreU(at.inverse_u, d, out.inverse_u + n);
+    storeSnapped(d, at.x, at.y, at.before, projection.width, projection.height, out, n);
   }
 }
 
@@ -85,6 +110,7 @@ HWY_AFTER_NAMESPACE();
 namespace deltaz {
 namespace {
 HWY_EXPORT(projectMesh);
+HWY_EXPORT(projectArrays);
 HWY_EXPORT(projectDoubles);
 
 void toFloats(const Vector3& v, double scale, float (&out)[3]) {
@@ -105,6 +131,11 @@ MeshProjection::MeshProjection(const ViewTransform& view)
 void MeshProjection::project(const float* x, const float* y, const float* z, const std::uint32_t* payload,
                              std::size_t count, const ProjectedVertices& out) const {
   HWY_DYNAMIC_DISPATCH(projectMesh)(*this, x, y, z, payload, count, out);
+}
+
+void MeshProjection::project(const float* x, const float* y, const float* z, std::size_t count,
+                             const ProjectedArrays& out) const {
+  HWY_DYNAMIC_DISPATCH(projectArrays)(*this, x, y, z, count, out);
 }
 
 void projectViewPositions(const double* u, const double* v, const double* w, std::size_t count, int width,

@@ -19,6 +19,11 @@ struct ProjectedVertices {
   RasterVertex* vertex;
   std::int32_t *snapped_x, *snapped_y;
 };
+// The same, for vertices few of which are used.
+struct ProjectedArrays {
+  float *x, *y, *inverse_u;
+  std::int32_t *snapped_x, *snapped_y;
+};
 
 // Vertices of a mesh in single precision, rotated and scaled about the eye; reads up to 15 behind the last.
 struct MeshProjection {
@@ -30,6 +35,8 @@ struct MeshProjection {
   explicit MeshProjection(const ViewTransform& view);
   void project(const float* x, const float* y, const float* z, const std::uint32_t* payload,
                std::size_t count, const ProjectedVertices& out) const;
+  void project(const float* x, const float* y, const float* z, std::size_t count,
+               const ProjectedArrays& out) const;
 };
 
 // (U, V, W) in double, as the object processors make them (u, v, w of camera.h). The payload is the vertex'
