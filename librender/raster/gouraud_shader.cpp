@@ -17,6 +17,11 @@ alignas(64) inline constexpr float kShadeLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1
 alignas(64) inline constexpr float kShadeLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1,
                                                                 2, 2, 2, 2, 3, 3, 3, 3};
 
+// Triangles that are set up together.
+inline constexpr std::size_t kShadeBatch = 16;
+// Gradients of slivers that are lines but for rounding; products with distances stay finite.
+inline constexpr double kSteepestWeight = 1e15;
+
 }  // namespace deltaz
 #endif
 
@@ -35,54 +40,96 @@ constexpr IntTag kInt;
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 constexpr std::size_t kVectors = kBlockPixels / kLanes;
 
-// Products of coordinates are exact in double.
-HWY_INLINE void setUp(const RasterTriangle& triangle, ShadingPlanes& planes) {
-  const auto& [a, b, c] = triangle.vertex;
-  const double bx = static_cast<double>(b.x) - static_cast<double>(a.x),
-               by = static_cast<double>(b.y) - static_cast<double>(a.y);
-  const double cx = static_cast<double>(c.x) - static_cast<double>(a.x),
-               cy = static_cast<double>(c.y) - static_cast<double>(a.y);
-  const double determinant = bx * cy - cx * by;
-  const double inverse = determinant != 0 ? 1 / determinant : 0;
-  const double b_scaled = static_cast<double>(b.inverse_u) * inverse,
-               c_scaled = static_cast<double>(c.inverse_u) * inverse;
-  const auto limited = [](double gradient) {
-    constexpr double kSteepest = 1e15;  // products with distances stay finite
-    return static_cast<float>(std::clamp(gradient, -kSteepest, kSteepest));
-  };
-  planes.anchor_x = a.x;
-  planes.anchor_y = a.y;
-  planes.second_x = limited(cy * b_scaled);
-  planes.second_y = limited(-(cx * b_scaled));
-  planes.third_x = limited(-(by * c_scaled));
-  planes.third_y = limited(bx * c_scaled);
-  for (int channel = 0; channel < 3; ++channel) {
-    const auto value = [&](const RasterVertex& vertex) {
-      return static_cast<float>(vertex.payload >> (8 * channel) & 0xFF);
-    };
-    planes.color[channel] = value(a);
-    planes.to_second[channel] = value(b) - value(a);
-    planes.to_third[channel] = value(c) - value(a);
+using DoubleTag = hn::CappedTag<double, 8>;
+using HalfFloatTag = hn::Rebind<float, DoubleTag>;
+
+// Sixteen triangles at once; products of coordinates are exact in double.
+HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count, ShadingPlanes* planes) {
+  alignas(64) RasterVertex vertex[3][kShadeBatch];
+  for (std::size_t t = 0; t < kShadeBatch; ++t) {
+    const RasterTriangle& triangle = *triangles[std::min(t, count - 1)];
+    for (std::size_t k = 0; k < 3; ++k) vertex[k][t] = triangle.vertex[k];
   }
-  planes.unused = 0;
+  alignas(64) float x[3][kShadeBatch], y[3][kShadeBatch], w[3][kShadeBatch], color[3][3][kShadeBatch];
+  alignas(64) float gradient[4][kShadeBatch];
+  for (std::size_t t = 0; t < kShadeBatch; t += kLanes) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Floats vx, vy, vw, payload;
+      hn::LoadInterleaved4(kFloat, reinterpret_cast<const float*>(vertex[k] + t), vx, vy, vw, payload);
+      hn::Store(vx, kFloat, x[k] + t);
+      hn::Store(vy, kFloat, y[k] + t);
+      hn::Store(vw, kFloat, w[k] + t);
+      const Ints rgba = hn::BitCast(kInt, payload), byte = hn::Set(kInt, 0xFF);
+      hn::Store(hn::ConvertTo(kFloat, hn::And(rgba, byte)), kFloat, color[k][0] + t);
+      hn::Store(hn::ConvertTo(kFloat, hn::And(hn::ShiftRight<8>(rgba), byte)), kFloat, color[k][1] + t);
+      hn::Store(hn::ConvertTo(kFloat, hn::And(hn::ShiftRight<16>(rgba), byte)), kFloat, color[k][2] + t);
+    }
+  }
+  constexpr DoubleTag d;
+  constexpr HalfFloatTag half_float;
+  const auto zero = hn::Zero(d);
+  for (std::size_t t = 0; t < kShadeBatch; t += hn::MaxLanes(DoubleTag())) {
+    const auto at = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
+    const auto x0 = at(x[0]), y0 = at(y[0]);
+    const auto bx = hn::Sub(at(x[1]), x0), by = hn::Sub(at(y[1]), y0);
+    const auto cx = hn::Sub(at(x[2]), x0), cy = hn::Sub(at(y[2]), y0);
+    const auto determinant = hn::Sub(hn::Mul(bx, cy), hn::Mul(cx, by));
+    const auto inverse =
+        hn::IfThenElse(hn::Eq(determinant, zero), zero, hn::Div(hn::Set(d, 1.0), determinant));
+    const auto b_scaled = hn::Mul(at(w[1]), inverse), c_scaled = hn::Mul(at(w[2]), inverse);
+    const auto store = [&](auto value, float* to) {
+      const auto limited = hn::Min(hn::Max(value, hn::Set(d, -kSteepestWeight)), hn::Set(d, kSteepestWeight));
+      hn::Store(hn::DemoteTo(half_float, limited), half_float, to + t);
+    };
+    store(hn::Mul(cy, b_scaled), gradient[0]);
+    store(hn::Neg(hn::Mul(cx, b_scaled)), gradient[1]);
+    store(hn::Neg(hn::Mul(by, c_scaled)), gradient[2]);
+    store(hn::Mul(bx, c_scaled), gradient[3]);
+  }
+  for (std::size_t t = 0; t < kShadeBatch; t += kLanes) {
+    const auto difference = [&](std::size_t k, std::size_t channel) {
+      return hn::Sub(hn::Load(kFloat, color[k][channel] + t), hn::Load(kFloat, color[0][channel] + t));
+    };
+    // Four floats of each triangle at a time.
+    alignas(64) float four[4][4 * kLanes];
+    hn::StoreInterleaved4(hn::Load(kFloat, x[0] + t), hn::Load(kFloat, y[0] + t),
+                          hn::Load(kFloat, gradient[0] + t), hn::Load(kFloat, gradient[1] + t), kFloat,
+                          four[0]);
+    hn::StoreInterleaved4(hn::Load(kFloat, gradient[2] + t), hn::Load(kFloat, gradient[3] + t),
+                          hn::Load(kFloat, color[0][0] + t), hn::Load(kFloat, color[0][1] + t), kFloat,
+                          four[1]);
+    hn::StoreInterleaved4(hn::Load(kFloat, color[0][2] + t), difference(1, 0), difference(1, 1),
+                          difference(1, 2), kFloat, four[2]);
+    hn::StoreInterleaved4(difference(2, 0), difference(2, 1), difference(2, 2), hn::Zero(kFloat), kFloat,
+                          four[3]);
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      for (std::size_t part = 0; part < 4; ++part)
+        std::memcpy(planes[t + n].value + 4 * part, four[part] + 4 * n, 4 * sizeof(float));
+    }
+  }
 }
 
-HWY_INLINE Ints shade(const ShadingPlanes& p, Floats x, Floats y, Floats u) {
-  const Floats dx = hn::Sub(x, hn::Set(kFloat, p.anchor_x)), dy = hn::Sub(y, hn::Set(kFloat, p.anchor_y));
+HWY_INLINE Ints shade(const ShadingPlanes& planes, Floats x, Floats y, Floats u) {
+  const float* const p = planes.value;
+  const Floats dx = hn::Sub(x, hn::Set(kFloat, p[0])), dy = hn::Sub(y, hn::Set(kFloat, p[1]));
   const auto weight = [&](float per_x, float per_y) {
     return hn::Mul(hn::Add(hn::Mul(hn::Set(kFloat, per_x), dx), hn::Mul(hn::Set(kFloat, per_y), dy)), u);
   };
   const Floats zero = hn::Zero(kFloat), one = hn::Set(kFloat, 1.0F);
-  const Floats second = hn::Min(hn::Max(weight(p.second_x, p.second_y), zero), one);
-  const Floats third = hn::Min(hn::Max(weight(p.third_x, p.third_y), zero), hn::Sub(one, second));
-  const auto channel = [&](int c) {
-    const Floats value =
-        hn::Add(hn::Set(kFloat, p.color[c]), hn::Add(hn::Mul(hn::Set(kFloat, p.to_second[c]), second),
-                                                     hn::Mul(hn::Set(kFloat, p.to_third[c]), third)));
-    return hn::ConvertTo(kInt, hn::Add(value, hn::Set(kFloat, 0.5F)));
+  const Floats second = hn::Min(hn::Max(weight(p[2], p[3]), zero), one);
+  const Floats third = hn::Min(hn::Max(weight(p[4], p[5]), zero), hn::Sub(one, second));
+  // The last bits of a number with this added are its nearest integer.
+  constexpr float kBias = 8388608.0F;
+  const auto channel = [&](std::size_t c) {
+    const Floats change =
+        hn::Add(hn::Mul(hn::Set(kFloat, p[9 + c]), second), hn::Mul(hn::Set(kFloat, p[12 + c]), third));
+    return hn::BitCast(kInt, hn::Add(hn::Add(hn::Set(kFloat, p[6 + c]), change), hn::Set(kFloat, kBias)));
   };
-  return hn::Or(hn::Or(channel(0), hn::ShiftLeft<8>(channel(1))),
-                hn::Or(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(0xFF000000U))));
+  // What the bias leaves above the lowest byte is taken away from the sum.
+  constexpr std::uint32_t kBiasBits = 0x4B000000;
+  constexpr std::uint32_t kRest = 0xFF000000U - kBiasBits - (kBiasBits << 8) - (kBiasBits << 16);
+  return hn::Add(hn::Add(channel(0), hn::ShiftLeft<8>(channel(1))),
+                 hn::Add(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(kRest))));
 }
 
 HWY_INLINE std::uint32_t bits(hn::Mask<IntTag> mask) {
@@ -107,20 +154,11 @@ HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
 
 void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, const TileBuffer& buffer,
                GouraudScratch& scratch, ColorFrame& frame) {
-  scratch.slot.assign(triangles.size(), kNoTriangle);
-  scratch.planes.clear();
-  // Set-up is made when a triangle is first met.
-  const auto slot_of = [&](std::int32_t triangle) {
-    std::uint32_t& slot = scratch.slot[static_cast<std::size_t>(triangle)];
-    if (slot == kNoTriangle) {
-      slot = static_cast<std::uint32_t>(scratch.planes.size());
-      setUp(*triangles[static_cast<std::size_t>(triangle)], scratch.planes.emplace_back());
-    }
-    return slot;
-  };
-  const auto planes_of = [&](std::int32_t triangle) -> const ShadingPlanes& {
-    return scratch.planes[slot_of(triangle)];
-  };
+  scratch.planes.resize((triangles.size() + kShadeBatch - 1) / kShadeBatch * kShadeBatch);
+  for (std::size_t first = 0; first < triangles.size(); first += kShadeBatch)
+    setUp(triangles.data() + first, std::min(kShadeBatch, triangles.size() - first),
+          scratch.planes.data() + first);
+  const ShadingPlanes* const planes = scratch.planes.data();
 
   const float origin_x = static_cast<float>(tile.j * kTileSide) - static_cast<float>(tile.width - 1) * 0.5F;
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
@@ -136,8 +174,7 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
     for (std::size_t block = 0; block < kBlocksAcross; ++block) {
       const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block * kBlockSide));
       const std::uint32_t whole = buffer.whole[static_cast<std::size_t>(block_i) * kBlocksAcross + block];
-      const ShadingPlanes* const of_whole =
-          whole == kNoTriangle ? nullptr : &planes_of(static_cast<std::int32_t>(whole));
+      const ShadingPlanes* const of_whole = whole == kNoTriangle ? nullptr : planes + whole;
       for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
         const std::size_t n = block * kBlockPixels + v;
         const Floats inverse_u = hn::Load(kFloat, depth + n);
@@ -158,9 +195,8 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
           const std::int32_t last = owner[n + static_cast<std::size_t>(std::bit_width(lanes)) - 1];
           const auto of_first = hn::And(left, hn::Eq(owners, hn::Set(kInt, first)));
           const auto of_last = hn::And(left, hn::Eq(owners, hn::Set(kInt, last)));
-          const std::uint32_t first_slot = slot_of(first), last_slot = slot_of(last);
-          result = hn::IfThenElse(of_first, shade(scratch.planes[first_slot], x, y, u), result);
-          result = hn::IfThenElse(of_last, shade(scratch.planes[last_slot], x, y, u), result);
+          result = hn::IfThenElse(of_first, shade(planes[first], x, y, u), result);
+          result = hn::IfThenElse(of_last, shade(planes[last], x, y, u), result);
           left = hn::AndNot(hn::Or(of_first, of_last), left);
         }
         hn::Store(result, kInt, color + n);

@@ -2,7 +2,7 @@
 // perspective: the plain shading of meshes whose RasterVertex::payload is an RGBA colour, a byte each, red
 // lowest.
 //
-// Only what is seen is coloured, each pixel once; set-up is made for triangles that are seen. Weights are
+// Only what is seen is coloured, each pixel once. Weights are
 // kept within the triangle, as the depth is. Same bits on every vector width. Thread-safety: different tiles
 // from different threads.
 #pragma once
@@ -25,21 +25,16 @@ struct ColorFrame {
   void resize(int new_width, int new_height);
 };
 
-// What shading needs of a triangle that is seen. The weights of the second and third vertex, each times 1/U,
-// are planes through 0 at the first vertex.
-struct ShadingPlanes {
-  float anchor_x, anchor_y;
-  float second_x, second_y, third_x, third_y;  // gradients
-  float color[3];                              // of the first vertex, 0 to 255
-  float to_second[3], to_third[3];             // what the others add
-  float unused;
+// What shading needs of a triangle: its first vertex (x, y); the gradients of the weights of the second and
+// of the third vertex, each times 1/U, planes through 0 at the first vertex; the colour of the first vertex,
+// 0 to 255, and what each of the others adds to it.
+struct alignas(64) ShadingPlanes {
+  float value[16];
 };
-static_assert(sizeof(ShadingPlanes) == 64);
 
 // Scratch of one worker, kept from tile to tile.
 struct GouraudScratch {
-  std::vector<std::uint32_t> slot;    // of a triangle of the tile in `planes`, or kNoTriangle
-  std::vector<ShadingPlanes> planes;  // of those that are seen
+  std::vector<ShadingPlanes> planes;  // of the tile's triangles
 };
 
 void shadeTileGouraud(const Tile& tile, std::span<const RasterTriangle* const> triangles,
