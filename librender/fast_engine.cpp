@@ -52,8 +52,9 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   const SeamIndex seams(database);
   // Objects by range are made of full-resolution nodes.
   const bool by_range = options.lod == LodScheme::kReport;
-  const ScheduleOptions levels = by_range ? ScheduleOptions{.tolerance = 0, .fixed_level = -1}
-                                          : ScheduleOptions{options.tolerance, options.fixed_level};
+  ScheduleOptions levels = by_range ? ScheduleOptions{.tolerance = 0, .fixed_level = -1}
+                                    : ScheduleOptions{options.tolerance, options.fixed_level};
+  levels.cull = options.cull;
   DELTAZ_TRY_ASSIGN(const Schedule schedule,
                     scheduleNodes(database, seams, environment.view, levels, statistics.nodes));
   statistics.level = schedule.level;

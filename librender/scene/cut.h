@@ -13,12 +13,15 @@
 
 #include "libdb/access/database.h"
 #include "libdb/access/node_position.h"
+#include "librender/scene/node_volume.h"
 
 namespace deltaz {
 
 struct CutNode {
   Node node;
-  bool in_view = false;  // drawn; the others lie outside the view volume
+  bool in_view = false;    // drawn; nothing of the others can be seen
+  bool seamed = false;     // a seam touches it (SeamState::kTouched)
+  NodeVolume volume = {};  // of terrain nodes
 };
 
 enum class Side : std::uint8_t { kSouth, kEast, kNorth, kWest };

@@ -46,6 +46,8 @@ struct RenderOptions {
   std::string color_map;
   std::vector<PartPose> poses;  // parts of models that do not stand as they do by default
   bool keep_triangle_ids = false;
+  // For tests of culling: false draws the nodes that cannot be seen, too.
+  bool cull = true;
 };
 
 // What covers a pixel.

@@ -5,6 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "librender/scene/horizon.h"
+#include "librender/scene/normal_cone.h"
+#include "librender/scene/projected_error.h"
 #include "librender/scene/strip_error.h"
 #include "librender/scene/view_volume.h"
 
@@ -20,7 +23,8 @@ class Scheduler {
         view_(view),
         options_(options),
         statistics_(statistics),
-        volume_(view, options.tolerance) {}
+        view_volume_(view, options.tolerance),
+        horizon_(database.area(), view.eye) {}
 
   Result<Schedule> run() {
     DELTAZ_TRY_ASSIGN(const Node root, database_.root());
@@ -31,11 +35,12 @@ class Scheduler {
   }
 
  private:
-  // Error bounds of what the node itself draws, in pixels.
-  double ownError(const Node& node) const {
+  // Error bounds of what the node itself draws, in pixels. Coverage errors lie in plan, in any direction.
+  double ownError(const CutNode& candidate) const {
+    const Node& node = candidate.node;
     if (node.record.level == 0) return 0;
-    const double worse = std::max(node.geometricError(), node.coverageError());
-    return projectedErrorBound(view_, node.centroid, node.radius(), worse);
+    return std::max(projectedHeightErrorBound(view_, candidate.volume, node.geometricError()),
+                    projectedErrorBound(view_, candidate.volume, node.coverageError()));
   }
 
   bool isFineEnough(const CutNode& candidate) const {
@@ -43,10 +48,27 @@ class Scheduler {
     if (node.record.type != NodeType::kTerrain) return false;
     if (node.record.level == 0) return true;
     // In view or not: what is in view may stand on its posts.
-    if (seams_.stateOf(positionOf(node.record)) == SeamState::kTouched) return false;
+    if (candidate.seamed) return false;
     if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
     if (!candidate.in_view) return true;
-    return options_.tolerance > 0 && ownError(node) <= options_.tolerance;
+    return options_.tolerance > 0 && ownError(candidate) <= options_.tolerance;
+  }
+
+  // False, and counted, if nothing of the node can be seen.
+  bool maySee(const CutNode& candidate) {
+    if (view_volume_.isOutside(candidate.volume)) {
+      ++statistics_.out_of_view;
+      return false;
+    }
+    if (horizon_.hides(candidate.volume)) {
+      ++statistics_.beyond_horizon;
+      return false;
+    }
+    if (facesAway(candidate.node, view_.eye)) {
+      ++statistics_.facing_away;
+      return false;
+    }
+    return true;
   }
 
   // Replaces the waiting nodes by what is fine enough below them, and appends that to the cut.
@@ -60,11 +82,13 @@ class Scheduler {
         if (child.record.isEmpty()) continue;
         const bool terrain = child.record.type == NodeType::kTerrain;
         if (!terrain && child.record.type != NodeType::kCluster) continue;
-        if (terrain && seams_.stateOf(positionOf(child.record)) == SeamState::kRemoved) continue;
+        const SeamState seam = terrain ? seams_.stateOf(positionOf(child.record)) : SeamState::kFree;
+        if (seam == SeamState::kRemoved) continue;
         CutNode candidate{child, true};
-        if (terrain && options_.cull && volume_.isOutside(child.centroid, child.radius())) {
-          ++statistics_.out_of_view;
-          candidate.in_view = false;
+        candidate.seamed = seam == SeamState::kTouched;
+        if (terrain) {
+          candidate.volume = volumeOf(child, database_.grid(child.record.grid), !candidate.seamed);
+          candidate.in_view = !options_.cull || maySee(candidate);
         }
         if (isFineEnough(candidate)) {
           nodes_.push_back(candidate);
@@ -112,7 +136,7 @@ class Scheduler {
   double stripError(std::uint32_t n, double added) const {
     const Node& node = nodes_[n].node;
     const double own = node.record.level == 0 ? 0 : node.geometricError();
-    return projectedErrorBound(view_, node.centroid, node.radius(), own + added);
+    return projectedHeightErrorBound(view_, nodes_[n].volume, own + added);
   }
 
   Schedule finish() {
@@ -131,7 +155,7 @@ class Scheduler {
       ++statistics_.drawn;
       std::uint32_t coarser = CutIndex::kNone;
       const double added = strips.strip(n, coarser);
-      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n].node),
+      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n]),
                                            coarser == CutIndex::kNone ? 0 : stripError(n, added)});
     }
     schedule.nodes = std::move(nodes_);
@@ -143,8 +167,7 @@ class Scheduler {
     std::vector<std::pair<double, std::uint32_t>> by_distance;
     for (std::uint32_t n = 0; n < nodes.size(); ++n) {
       if (!nodes[n].in_view) continue;
-      const Node& node = nodes[n].node;
-      by_distance.emplace_back(std::max(0.0, length(node.centroid - view_.eye) - node.radius()), n);
+      by_distance.emplace_back(leastDistance(nodes[n].volume, view_.eye), n);
     }
     std::sort(by_distance.begin(), by_distance.end());
     std::vector<std::uint32_t> order;
@@ -158,28 +181,14 @@ class Scheduler {
   const ViewTransform& view_;
   const ScheduleOptions& options_;
   FrameStatistics::Nodes& statistics_;
-  // A node's border follows coarser neighbours, which displaces it by up to the tolerance: so much more than
-  // the picture is in view.
-  ViewVolume volume_;
+  // A border that follows coarser edges lies up to the tolerance beside the finer node that is to meet it: so
+  // much more than the picture is in view.
+  ViewVolume view_volume_;
+  Horizon horizon_;
   std::vector<CutNode> nodes_;
 };
 
 }  // namespace
-
-double projectedErrorBound(const ViewTransform& view, const Vector3& centre, double radius, double error) {
-  if (error == 0) return 0;
-  if (!(error < std::numeric_limits<double>::infinity())) return error;
-  const Vector3 offset = centre - view.eye;
-  const double tangent_squared = largestTangentSquared(view);
-  // Two lower bounds of the depth of a point of the sphere that is in the picture: the sphere's nearest
-  // depth, and, because |p| = U sqrt(1 + tangent^2), its nearest distance divided by the picture's largest
-  // slant.
-  const double nearest_depth = dot(view.forward, offset) - radius;
-  const double nearest_slant = (length(offset) - radius) / std::sqrt(1 + tangent_squared);
-  const double depth = std::max(nearest_depth, nearest_slant) - error;
-  if (!(depth > 0)) return std::numeric_limits<double>::infinity();
-  return view.pixels * error * std::sqrt(1 + tangent_squared) / depth;
-}
 
 Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics) {

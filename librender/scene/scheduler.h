@@ -2,10 +2,11 @@
 // project to no more than the tolerance, whatever the levels of its neighbours.
 //
 // A node is refined while its geometric or its coverage error projects to more than the tolerance, and while
-// the eye is inside its bounding sphere and its error is not zero. Nodes out of view stay as they are. Where
-// two levels meet, the finer node's border follows the coarser one's edges (objects/border_stitcher.h), so
-// along that strip both levels' errors add: the coarser node is refined until the sum projects to no more
-// than the tolerance, too. Neighbours may differ by any number of levels.
+// the eye is inside its bounding volume and its error is not zero. Nodes that cannot be seen, because they
+// are out of view, below the horizon or turned away, stay as they are. Where two levels meet, the finer
+// node's border follows the coarser one's edges (objects/border_stitcher.h), so along that strip both levels'
+// errors add: the coarser node is refined until the sum projects to no more than the tolerance, too.
+// Neighbours may differ by any number of levels.
 //
 // Reads only the node pages of nodes in the cut and of their siblings. Thread-safety: pure functions.
 #pragma once
@@ -16,6 +17,7 @@
 #include "formats/error.h"
 #include "libdb/access/database.h"
 #include "librender/scene/cut.h"
+#include "librender/scene/projected_error.h"
 #include "librender/scene/render.h"
 #include "librender/scene/seam_index.h"
 
@@ -37,18 +39,13 @@ struct ScheduleOptions {
   int fixed_level = -1;  // >= 0: this level everywhere (at most the coarsest)
   // For tests that must see the contract fail: leaves the strips untested.
   bool test_strips = true;
-  // For tests of culling: false keeps everything in view.
+  // For tests of culling: false takes everything for seen.
   bool cull = true;
 };
 
-// Bound, in pixels, of how far a displacement of at most `error` metres of points inside the sphere moves
-// them on the screen, for points in the picture; infinity where the sphere reaches the eye. Never too small:
-// a point at depth U and tangent p moves by |dp - p dU| / (U + dU) <= error sqrt(1 + p^2) / (U - error)
-// tangents.
-double projectedErrorBound(const ViewTransform& view, const Vector3& centre, double radius, double error);
-
-// Counts visited, out_of_view and drawn nodes in `statistics`.
-// Nodes that `seams` touch are drawn at full resolution, whatever the tolerance.
+// Counts in `statistics` the nodes visited, those not opened because nothing of them can be seen (by the
+// first reason that was found), and those drawn. Nodes that `seams` touch are drawn at full resolution,
+// whatever the tolerance.
 Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics);
 

@@ -16,13 +16,16 @@ double outsideOf(const Vector3& scaled) {
 
 }  // namespace
 
-Sea::Sea(const AreaHeader& area, const ViewTransform& view, const Light& light, const Atmosphere& atmosphere)
-    : eye_(view.eye), light_(light) {
+SeaAxes seaAxes(const AreaHeader& area) {
   const EllipsoidShape ellipsoid = area.grids.empty() ? EllipsoidShape{} : area.grids.front().ellipsoid;
   const double flattening = ellipsoid.inverse_flattening != 0 ? 1 / ellipsoid.inverse_flattening : 0;
   const double height = area.lowest_height - area.sea_drop;
-  const double a = ellipsoid.semi_major_axis + height;
-  const double b = ellipsoid.semi_major_axis * (1 - flattening) + height;
+  return {ellipsoid.semi_major_axis + height, ellipsoid.semi_major_axis * (1 - flattening) + height};
+}
+
+Sea::Sea(const AreaHeader& area, const ViewTransform& view, const Light& light, const Atmosphere& atmosphere)
+    : eye_(view.eye), light_(light) {
+  const auto [a, b] = seaAxes(area);
   inverse_a_ = 1 / a;
   inverse_b_ = 1 / b;
   scaled_eye_ = {eye_.x * inverse_a_, eye_.y * inverse_a_, eye_.z * inverse_b_};

@@ -13,6 +13,12 @@
 
 namespace deltaz {
 
+// Semi-axes of the sea's ellipsoid, metres.
+struct SeaAxes {
+  double a = 0, b = 0;
+};
+SeaAxes seaAxes(const AreaHeader& area);
+
 class Sea {
  public:
   Sea(const AreaHeader& area, const ViewTransform& view, const Light& light, const Atmosphere& atmosphere);

@@ -21,6 +21,16 @@ bool ViewVolume::isOutside(const Vector3& centre, double radius) const {
   return false;
 }
 
+bool ViewVolume::isOutside(const NodeVolume& volume) const {
+  const Vector3 offset = volume.centre - eye_;
+  for (const HalfSpace& half_space : half_spaces_) {
+    const double short_of = half_space.distance - dot(half_space.inward, offset);
+    if (short_of > volume.radius) return true;
+    if (short_of > 0 && short_of > reachAlong(volume, half_space.inward)) return true;
+  }
+  return false;
+}
+
 double largestTangentSquared(const ViewTransform& view) {
   const double x = view.width / 2.0 / view.pixels, y = view.height / 2.0 / view.pixels;
   return x * x + y * y;

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "librender/scene/camera.h"
+#include "librender/scene/node_volume.h"
 
 namespace deltaz {
 
@@ -20,6 +21,8 @@ class ViewVolume {
 
   // True only if nothing inside the sphere (Earth-centred, metres) can be in the picture.
   bool isOutside(const Vector3& centre, double radius) const;
+  // The same of a node's volume.
+  bool isOutside(const NodeVolume& volume) const;
 
  private:
   struct HalfSpace {

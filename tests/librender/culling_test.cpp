@@ -1,5 +1,6 @@
 // What is skipped must not be missed, and nothing may show through the ground.
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -7,6 +8,7 @@
 #include "libdb/access/plan_shape.h"
 #include "tests/librender/cut_checks.h"
 #include "tests/librender/picture_comparison.h"
+#include "tests/librender/scene/node_samples.h"
 #include "tests/librender/test_databases.h"
 #include "tests/support/synthetic_grid.h"
 
@@ -63,6 +65,51 @@ TEST(Culling, removes_no_node_and_no_face_that_the_reference_shows) {
     EXPECT_GT(back_facing, 0u);
     EXPECT_GT(shown, 10000u);
   }
+}
+
+// Where all nodes are of one level no border is stitched, so what is left out must change nothing at all.
+TEST(Culling, leaves_every_bit_of_a_picture_as_it_is) {
+  FrameStatistics::Nodes counts;
+  for (const SyntheticGridOptions& options : areasOfAllSorts()) {
+    const MemoryDatabase area = makeDatabase(options, 16);
+    const int levels = area.database.grid(0).header().level_count;
+    std::mt19937 random(23);
+    for (int n = 0; n < viewsPerArea(24); ++n) {
+      RenderOptions render;
+      render.camera = randomView(area.database, random, 160, 120);
+      if (n % 4 == 1) {
+        // From far away, low over the sea, northwards.
+        render.camera.eye.latitude -= std::uniform_real_distribution<double>(0.5, 5)(random);
+        render.camera.eye.height = area.database.area().lowest_height +
+                                   std::pow(10.0, std::uniform_real_distribution<double>(0.3, 3.5)(random));
+        render.camera.heading = render.camera.pitch = 0;
+      } else if (n % 4 == 3) {
+        // From below.
+        render.camera.eye.height -= std::uniform_real_distribution<double>(5000, 100000)(random);
+        render.camera.pitch = 70;
+      }
+      render.keep_triangle_ids = true;
+      render.fixed_level = n % levels;
+      FrameStatistics culled_statistics, whole_statistics;
+      const Picture culled = draw(EngineKind::kFast, area.database, render, culled_statistics);
+      render.cull = false;
+      const Picture whole = draw(EngineKind::kFast, area.database, render, whole_statistics);
+      ASSERT_EQ(culled.rgb, whole.rgb) << inWords(render.camera);
+      ASSERT_EQ(culled.depth, whole.depth) << inWords(render.camera);
+      ASSERT_EQ(culled.surface, whole.surface) << inWords(render.camera);
+      ASSERT_EQ(culled.triangle, whole.triangle) << inWords(render.camera);
+      EXPECT_LE(culled_statistics.nodes.drawn, whole_statistics.nodes.drawn);
+      EXPECT_EQ(whole_statistics.nodes.out_of_view + whole_statistics.nodes.beyond_horizon +
+                    whole_statistics.nodes.facing_away,
+                0u);
+      counts.out_of_view += culled_statistics.nodes.out_of_view;
+      counts.beyond_horizon += culled_statistics.nodes.beyond_horizon;
+      counts.facing_away += culled_statistics.nodes.facing_away;
+    }
+  }
+  EXPECT_GT(counts.out_of_view, 100u);
+  EXPECT_GT(counts.beyond_horizon, 50u);
+  EXPECT_GT(counts.facing_away, 20u);
 }
 
 constexpr int kNear = 3;  // pixels: the tolerance, and as much for the silhouette's own pixels

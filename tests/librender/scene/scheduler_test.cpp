@@ -53,8 +53,8 @@ TEST(Scheduler, cuts_the_area_once_and_keeps_every_node_in_view_within_the_toler
         if (!node.in_view) continue;
         chosen.insert(node.node.record.level);
         if (node.node.record.level == 0) continue;
-        const double error = std::max(node.node.geometricError(), node.node.coverageError());
-        EXPECT_LE(projectedErrorBound(view, node.node.centroid, node.node.radius(), error), tolerance);
+        EXPECT_LE(projectedHeightErrorBound(view, node.volume, node.node.geometricError()), tolerance);
+        EXPECT_LE(projectedErrorBound(view, node.volume, node.node.coverageError()), tolerance);
       }
       // Nodes at area ends span more than the area, the same at every level only if the whole is a multiple.
       EXPECT_LE(cellsOf(area.database, schedule.value().nodes), cellsOf(area.database, whole));
@@ -103,11 +103,10 @@ TEST(Scheduler, lists_all_that_is_in_view_nearest_first) {
     std::set<std::uint32_t> listed;
     double last = 0;
     for (const std::uint32_t n : schedule.front_to_back) {
-      const Node& node = schedule.nodes[n].node;
-      const double distance = std::max(0.0, length(node.centroid - view.eye) - node.radius());
+      const double distance = leastDistance(schedule.nodes[n].volume, view.eye);
       EXPECT_GE(distance, last);
       last = distance;
-      listed.insert(node.number);
+      listed.insert(schedule.nodes[n].node.number);
     }
     EXPECT_GT(last, 0);
     EXPECT_EQ(listed.size(), schedule.front_to_back.size());
