@@ -361,7 +361,6 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     counts.samples_tested += worker->tile_counts.tested;
     counts.samples_written += worker->tile_counts.written;
   }
-  // What touches several tiles; numbers that were taken but not used have no bits either, so the sum tells.
   std::uint64_t covers = 0, hidden = 0;
   for (const std::uint8_t bits : crossing_) {
     covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
@@ -369,7 +368,7 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   }
   counts.drawn += covers + hidden;
   counts.hidden += hidden;
-  counts.no_sample = counts.in - counts.outside - counts.back_facing - counts.drawn;
+  counts.no_sample += bins_.crossingTriangles() - covers - hidden;
   return counts;
 }
 

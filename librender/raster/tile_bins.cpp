@@ -39,6 +39,7 @@ std::uint32_t TileBins::Writer::crossingNumber() {
     crossing_next_ = crossing_count_->fetch_add(kCrossingBlock, std::memory_order_relaxed);
     crossing_end_ = crossing_next_ + kCrossingBlock;
   }
+  ++crossing_used_;
   return crossing_next_++;
 }
 
@@ -57,7 +58,7 @@ void TileBins::reset(int width, int height, std::size_t writers) {
   for (const std::unique_ptr<Writer>& writer : writers_) {
     writer->across_ = across_;
     writer->chunks_taken_ = 0;
-    writer->crossing_next_ = writer->crossing_end_ = 0;
+    writer->crossing_next_ = writer->crossing_end_ = writer->crossing_used_ = 0;
     writer->crossing_count_ = &crossing_count_;
     writer->bins_.resize(tileCount());
     for (Writer::Bin& bin : writer->bins_) {
@@ -72,6 +73,12 @@ void TileBins::finish() {
   for (const std::unique_ptr<Writer>& writer : writers_) {
     for (Writer::Bin& bin : writer->bins_) bin.close();
   }
+}
+
+std::uint64_t TileBins::crossingTriangles() const {
+  std::uint64_t sum = 0;
+  for (const std::unique_ptr<Writer>& writer : writers_) sum += writer->crossing_used_;
+  return sum;
 }
 
 void TileBins::segmentsOf(std::size_t tile, std::vector<Segment>& segments) const {

@@ -81,7 +81,7 @@ class TileBins {
     std::uint32_t item_ = 0;
     std::vector<std::unique_ptr<RasterTriangle[]>> slabs_;
     std::size_t chunks_taken_ = 0;
-    std::uint32_t crossing_next_ = 0, crossing_end_ = 0;
+    std::uint32_t crossing_next_ = 0, crossing_end_ = 0, crossing_used_ = 0;
     std::atomic<std::uint32_t>* crossing_count_ = nullptr;
   };
 
@@ -98,7 +98,9 @@ class TileBins {
   }
   // The runs of a tile in the order of submission; `segments` is replaced.
   void segmentsOf(std::size_t tile, std::vector<Segment>& segments) const;
-  // Upper bound of RasterTriangle::crossing.
+  // Triangles that touch several tiles.
+  std::uint64_t crossingTriangles() const;
+  // Upper bound of RasterTriangle::crossing; not all numbers below it are used.
   std::uint32_t crossingCount() const { return crossing_count_.load(std::memory_order_relaxed); }
 
  private:
