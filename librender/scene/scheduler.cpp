@@ -1,8 +1,8 @@
 #include "librender/scene/scheduler.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <optional>
+#include <unordered_set>
 #include <utility>
 
 #include "librender/scene/horizon.h"
@@ -100,51 +100,74 @@ class Scheduler {
     return Success{};
   }
 
+  // What is known of the strip along a node's border.
+  struct Strip {
+    bool known = false;
+    double pixels = 0;                   // the bound of its error; 0 if no neighbour is coarser
+    std::vector<std::uint32_t> depends;  // numbers of the records it follows from
+  };
+
+  // The coarser node that contributes most, as an index of nodes_; kNone if there is none.
+  std::uint32_t weighStrip(const StripErrors& strips, std::uint32_t n) {
+    std::uint32_t coarser = CutIndex::kNone;
+    const double added = strips.strip(n, coarser, &touched_);
+    Strip& strip = strips_[n];
+    strip.known = true;
+    strip.pixels = 0;
+    if (coarser != CutIndex::kNone) {
+      const Node& node = nodes_[n].node;
+      const double own = node.record.level == 0 ? 0 : node.geometricError();
+      strip.pixels = projectedHeightErrorBound(view_, nodes_[n].volume, own + added);
+    }
+    strip.depends.clear();
+    for (const std::uint32_t other : touched_) strip.depends.push_back(nodes_[other].node.number);
+    return coarser;
+  }
+
   // Refines coarser neighbours until every strip in view is good enough. A child's error may exceed its
-  // parent's, so all strips are looked at again after each round; every round refines, so rounds end.
+  // parent's, so strips beside what was refined are looked at again; every round refines, so rounds end.
   Status refineBesideStrips() {
     for (;;) {
+      strips_.resize(nodes_.size());
       const CutIndex index(database_, nodes_);
       const StripErrors strips(database_, nodes_, index);
-      std::vector<bool> refined(nodes_.size(), false);
-      bool any = false;
+      std::unordered_set<std::uint32_t> refined;  // record numbers
       for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
-        if (!nodes_[n].in_view) continue;
-        std::uint32_t coarser = CutIndex::kNone;
-        const double added = strips.strip(n, coarser);
-        if (coarser == CutIndex::kNone ||
-            (options_.tolerance > 0 && stripError(n, added) <= options_.tolerance))
+        if (!nodes_[n].in_view || strips_[n].known) continue;
+        const std::uint32_t coarser = weighStrip(strips, n);
+        if (coarser == CutIndex::kNone || (options_.tolerance > 0 && strips_[n].pixels <= options_.tolerance))
           continue;
-        refined[coarser] = true;
-        any = true;
+        refined.insert(nodes_[coarser].node.number);
       }
-      if (!any) return Success{};
+      if (refined.empty()) return Success{};
       std::vector<Node> waiting;
-      std::vector<CutNode> kept;
+      std::size_t kept = 0;
       for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        if (refined[n]) {
+        if (refined.contains(nodes_[n].node.number)) {
           waiting.push_back(nodes_[n].node);
-        } else {
-          kept.push_back(std::move(nodes_[n]));
+          continue;
         }
+        Strip& strip = strips_[n];
+        strip.known =
+            strip.known && std::none_of(strip.depends.begin(), strip.depends.end(),
+                                        [&](std::uint32_t other) { return refined.contains(other); });
+        if (kept != n) {
+          nodes_[kept] = nodes_[n];
+          strips_[kept] = std::move(strip);
+        }
+        ++kept;
       }
-      nodes_ = std::move(kept);
+      nodes_.resize(kept);
+      strips_.resize(kept);
       DELTAZ_TRY(refine(waiting));
     }
   }
 
-  double stripError(std::uint32_t n, double added) const {
-    const Node& node = nodes_[n].node;
-    const double own = node.record.level == 0 ? 0 : node.geometricError();
-    return projectedHeightErrorBound(view_, nodes_[n].volume, own + added);
-  }
-
   Schedule finish() {
-    std::sort(nodes_.begin(), nodes_.end(),
-              [](const CutNode& a, const CutNode& b) { return a.node.number < b.node.number; });
     Schedule schedule;
-    const CutIndex index(database_, nodes_);
-    const StripErrors strips(database_, nodes_, index);
+    strips_.resize(nodes_.size());
+    std::optional<CutIndex> index;
+    std::optional<StripErrors> strips;
     bool first = true;
     for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
       if (!nodes_[n].in_view) continue;
@@ -153,11 +176,15 @@ class Scheduler {
       schedule.coarsest_level = std::max(schedule.coarsest_level, level);
       first = false;
       ++statistics_.drawn;
-      std::uint32_t coarser = CutIndex::kNone;
-      const double added = strips.strip(n, coarser);
-      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n]),
-                                           coarser == CutIndex::kNone ? 0 : stripError(n, added)});
+      if (!strips_[n].known) {
+        // Strips were not to be tested.
+        if (!strips) strips.emplace(database_, nodes_, index.emplace(database_, nodes_));
+        weighStrip(*strips, n);
+      }
+      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n]), strips_[n].pixels});
     }
+    std::sort(nodes_.begin(), nodes_.end(),
+              [](const CutNode& a, const CutNode& b) { return a.node.number < b.node.number; });
     schedule.nodes = std::move(nodes_);
     schedule.front_to_back = frontToBack(schedule.nodes);
     return schedule;
@@ -186,6 +213,8 @@ class Scheduler {
   ViewVolume view_volume_;
   Horizon horizon_;
   std::vector<CutNode> nodes_;
+  std::vector<Strip> strips_;           // of nodes_, as far as they are known
+  std::vector<std::uint32_t> touched_;  // of the strip that is looked at
 };
 
 }  // namespace

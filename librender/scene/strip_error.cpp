@@ -36,13 +36,16 @@ double StripErrors::bow(const NodeRecord& record) const {
                                          std::min(all.end, (std::int64_t{record.y} + 1) * span + 1)});
 }
 
-double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const {
+double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth,
+                                 std::vector<std::uint32_t>* touched) const {
   // Coarser and coarser nodes touch the ends of edges, so this ends; a damaged tree must not make it go on.
   if (depth > 32) return std::numeric_limits<double>::infinity();
   std::uint32_t coarsest = CutIndex::kNone;
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::uint32_t node = index_.holding(grid, column - (quadrant & 1), row - ((quadrant >> 1) & 1));
-    if (node == CutIndex::kNone || !nodes_[node].in_view) continue;
+    if (node == CutIndex::kNone) continue;
+    if (touched != nullptr) touched->push_back(node);
+    if (!nodes_[node].in_view) continue;
     const NodeRecord& record = nodes_[node].node.record;
     const std::int64_t mask = (std::int64_t{1} << record.level) - 1;
     if ((column & mask) == 0 && (row & mask) == 0) continue;
@@ -55,12 +58,14 @@ double StripErrors::displacement(std::uint16_t grid, std::int64_t column, std::i
   const bool along_x = (column & mask) != 0;
   const std::int64_t begin = floorDivide(along_x ? column : row, step) * step;
   const auto end_displacement = [&](std::int64_t at) {
-    return along_x ? displacement(grid, at, row, depth + 1) : displacement(grid, column, at, depth + 1);
+    return along_x ? displacement(grid, at, row, depth + 1, touched)
+                   : displacement(grid, column, at, depth + 1, touched);
   };
   return node.geometricError() + std::max(end_displacement(begin), end_displacement(begin + step));
 }
 
-double StripErrors::strip(std::uint32_t node, std::uint32_t& worst) const {
+double StripErrors::strip(std::uint32_t node, std::uint32_t& worst,
+                          std::vector<std::uint32_t>* touched) const {
   const NodeRecord& record = nodes_[node].node.record;
   const NodePosition position = positionOf(record);
   const std::int64_t step = std::int64_t{1} << record.level;
@@ -68,9 +73,12 @@ double StripErrors::strip(std::uint32_t node, std::uint32_t& worst) const {
   const std::int64_t west = record.x * span, south = record.y * span;
   double largest = 0;
   worst = CutIndex::kNone;
+  if (touched != nullptr) touched->clear();
   for (const Side side : kSides) {
     const std::uint32_t across = index_.acrossWhole(position, side);
-    if (across == CutIndex::kNone || !nodes_[across].in_view) continue;
+    if (across == CutIndex::kNone) continue;
+    if (touched != nullptr) touched->push_back(across);
+    if (!nodes_[across].in_view) continue;
     const Node& coarse = nodes_[across].node;
     if (coarse.record.level <= record.level) continue;
     const bool along_x = side == Side::kSouth || side == Side::kNorth;
@@ -84,8 +92,8 @@ double StripErrors::strip(std::uint32_t node, std::uint32_t& worst) const {
     double of_ends = 0;
     for (const std::int64_t end :
          {floorDivide(from, coarse_step) * coarse_step, ceilDivide(from + span, coarse_step) * coarse_step}) {
-      of_ends = std::max(of_ends, along_x ? displacement(record.grid, end, line, 0)
-                                          : displacement(record.grid, line, end, 0));
+      of_ends = std::max(of_ends, along_x ? displacement(record.grid, end, line, 0, touched)
+                                          : displacement(record.grid, line, end, 0, touched));
     }
     const double moved = coarse.geometricError() + of_ends;
     // Sideways moves tilt: by the steepest slope of the node, and by what the strip itself leans.

@@ -26,12 +26,14 @@ class StripErrors {
 
   // Metres along the ellipsoid normal that are to be added to the node's own geometric error; 0 if none of
   // its neighbours is coarser. `worst` becomes the coarser neighbour that contributes most. Infinity if
-  // unknown.
-  double strip(std::uint32_t node, std::uint32_t& worst) const;
+  // unknown. `touched`, if given, becomes the other nodes of the cut that were looked at, some of them more
+  // than once: while these stay in the cut, the result stays.
+  double strip(std::uint32_t node, std::uint32_t& worst, std::vector<std::uint32_t>* touched = nullptr) const;
 
  private:
   // Largest displacement of post (column, row), which node `owner` has, by coarser nodes that touch it.
-  double displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth) const;
+  double displacement(std::uint16_t grid, std::int64_t column, std::int64_t row, int depth,
+                      std::vector<std::uint32_t>* touched) const;
   // Of the node's edges, metres.
   double bow(const NodeRecord& record) const;
 
