@@ -63,9 +63,13 @@ struct Picture {
                  // of a model: instance << 32 | triangle of the drawn mesh
 };
 
+// What is counted is counted once, for one reason (conservation.h).
 struct FrameStatistics {
+  // Of the quadtrees: visited is the sum of the others. Empty nodes have no heights or lie under another
+  // grid; opened ones may be seen and gave way to their children.
   struct Nodes {
     std::uint64_t visited = 0, out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, drawn = 0;
+    std::uint64_t empty = 0, opened = 0;
   } nodes;
   // Placed models: those read from the file, those of them that no part of shows in the picture, and those
   // drawn, part or whole. A page of placements that is out of view is not read.

@@ -79,11 +79,13 @@ class Scheduler {
       DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database_.children(parent));
       for (const Node& child : children) {
         ++statistics_.visited;
-        if (child.record.isEmpty()) continue;
         const bool terrain = child.record.type == NodeType::kTerrain;
-        if (!terrain && child.record.type != NodeType::kCluster) continue;
         const SeamState seam = terrain ? seams_.stateOf(positionOf(child.record)) : SeamState::kFree;
-        if (seam == SeamState::kRemoved) continue;
+        if (child.record.isEmpty() || (!terrain && child.record.type != NodeType::kCluster) ||
+            seam == SeamState::kRemoved) {
+          ++statistics_.empty;
+          continue;
+        }
         CutNode candidate{child, true};
         candidate.seamed = seam == SeamState::kTouched;
         if (terrain) {
@@ -93,6 +95,8 @@ class Scheduler {
         if (isFineEnough(candidate)) {
           nodes_.push_back(candidate);
         } else {
+          // One that cannot be seen is counted as that, even if others stand on its posts.
+          if (candidate.in_view) ++statistics_.opened;
           waiting.push_back(child);
         }
       }
@@ -144,6 +148,7 @@ class Scheduler {
       std::size_t kept = 0;
       for (std::size_t n = 0; n < nodes_.size(); ++n) {
         if (refined.contains(nodes_[n].node.number)) {
+          if (nodes_[n].in_view) ++statistics_.opened;
           waiting.push_back(nodes_[n].node);
           continue;
         }

@@ -34,6 +34,7 @@
 #include "librender/raster/grid_culler.h"
 #include "librender/raster/mesh_renderer.h"
 #include "librender/raster/vertex_projection.h"
+#include "librender/scene/conservation.h"
 #include "librender/scene/render.h"
 #include "librender/sweep/shown_displacement.h"
 #include "librender/sweep/spread.h"
@@ -95,9 +96,8 @@ Result<Frame> drawFrame(const Database& database, const RenderOptions& options,
                         EngineKind engine = EngineKind::kFast) {
   Frame frame;
   DELTAZ_TRY_ASSIGN(frame.picture, makeEngine(engine)->render(database, options, frame.statistics));
-  const FrameStatistics::Triangles& t = frame.statistics.triangles;
-  if (t.in != t.back_facing + t.clipped + t.no_sample + t.drawn)
-    return internalError("triangles", "those that came in are not the sum of those that went");
+  if (const std::string loss = findLoss(frame.statistics); !loss.empty())
+    return internalError("statistics", loss);
   return frame;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "librender/scene/conservation.h"
 #include "tools/common/output_file.h"
 #include "tools/common/picture_file.h"
 #include "tools/common/progress.h"
@@ -32,6 +33,8 @@ Result<Frame> renderFrame(const Database& database, const View& view, const Comm
     progress.report("rendering", static_cast<double>(i) / view.repeat);
     FrameStatistics statistics;
     DELTAZ_TRY_ASSIGN(Picture picture, engine->render(database, view.render, statistics));
+    if (const std::string loss = findLoss(statistics); !loss.empty())
+      return internalError(engineName(view.engine), loss);
     frame.repeats.push_back(statistics);
     if (i > 0 && (picture.rgb != frame.picture.rgb || picture.depth != frame.picture.depth)) {
       return internalError(engineName(view.engine),

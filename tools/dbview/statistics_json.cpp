@@ -48,7 +48,9 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
                    {"beyond_horizon", first.nodes.beyond_horizon},
                    {"facing_away", first.nodes.facing_away},
                    {"occluded", first.nodes.occluded},
-                   {"drawn", first.nodes.drawn}};
+                   {"drawn", first.nodes.drawn},
+                   {"opened", first.nodes.opened},
+                   {"empty", first.nodes.empty}};
   if (lod == LodScheme::kReport) json["objects"] = objectsJson(first.objects);
   json["models"] = {{"visited", first.models.visited},
                     {"out_of_view", first.models.out_of_view},
