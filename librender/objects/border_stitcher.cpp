@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "libdb/access/grid_locator.h"
 #include "libdb/access/seam_geometry.h"
@@ -119,6 +120,43 @@ std::vector<std::uint8_t> nodesToProcess(const std::vector<CutNode>& cut, const 
     }
   }
   return wanted;
+}
+
+std::vector<std::uint32_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
+                                          const CutIndex& index, const SeamIndex& seams,
+                                          std::span<const std::uint32_t> part) {
+  std::unordered_set<std::uint32_t> wanted(part.begin(), part.end());
+  std::vector<std::uint32_t> waiting(part.begin(), part.end());
+  const auto want = [&](std::uint32_t n) {
+    if (wanted.insert(n).second) waiting.push_back(n);
+  };
+  for (const std::uint32_t n : part) {
+    const LeafSeams* const leaf =
+        cut[n].node.record.level == 0 ? seams.leaf(positionOf(cut[n].node.record)) : nullptr;
+    if (leaf == nullptr) continue;
+    for (const NodePosition& partner : leaf->partners) {
+      if (const std::uint32_t other = index.at(partner); other != CutIndex::kNone) want(other);
+    }
+  }
+  // The ends of an edge may follow an edge that is coarser still.
+  while (!waiting.empty()) {
+    const NodeRecord& record = cut[waiting.back()].node.record;
+    waiting.pop_back();
+    const Extent extent = extentOf(database, record);
+    const auto want_coarser = [&](std::uint32_t other) {
+      if (other != CutIndex::kNone && cut[other].in_view && cut[other].node.record.level > record.level)
+        want(other);
+    };
+    for (const Side side : kSides) want_coarser(index.acrossWhole(positionOf(record), side));
+    for (int corner = 0; corner < 4; ++corner) {
+      const Touching around = touching(index, record.grid, extent.west + (corner & 1) * extent.span,
+                                       extent.south + (corner >> 1) * extent.span);
+      for (int k = 0; k < around.count; ++k) want_coarser(around.node[static_cast<std::size_t>(k)]);
+    }
+  }
+  std::vector<std::uint32_t> sorted(wanted.begin(), wanted.end());
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
 }
 
 BorderStitcher::BorderStitcher(const Database& database, const std::vector<CutNode>& cut,

@@ -22,6 +22,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "libdb/access/terrain_tile.h"
@@ -41,6 +42,13 @@ struct ProcessedNode {
 // seams stand on. One flag a node.
 std::vector<std::uint8_t> nodesToProcess(const std::vector<CutNode>& cut, const CutIndex& index,
                                          const SeamIndex& seams);
+
+// The same to draw some of those in view, by their indices, with the vertices they have if all are drawn:
+// also the coarser nodes in view that touch them, whose edges their borders follow. Indices, ascending. So a
+// picture may be drawn in parts, nearest first, and leave out what they hide.
+std::vector<std::uint32_t> nodesToProcess(const Database& database, const std::vector<CutNode>& cut,
+                                          const CutIndex& index, const SeamIndex& seams,
+                                          std::span<const std::uint32_t> part);
 
 class BorderStitcher {
  public:

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <optional>
+#include <random>
 
 #include "librender/scene/scheduler.h"
 #include "tests/librender/textured_area.h"
@@ -101,6 +102,78 @@ TEST(BorderStitcher, gives_vertices_texture_coordinates_of_where_they_stand) {
     EXPECT_LT(coarse.worst_seam, 0.5);
     EXPECT_LT(placementOf(memory.database, 0, false).foreign, full.foreign);
   }
+}
+
+// Nodes as a picture processes them, `wanted` and no others.
+class Processing {
+ public:
+  Processing(const Database& database, const Schedule& schedule, const ViewTransform& view,
+             const std::vector<std::uint32_t>& wanted)
+      : tiles_(schedule.nodes.size()), vertices_(schedule.nodes.size()), processed(schedule.nodes.size()) {
+    for (const std::uint32_t n : wanted) {
+      tiles_[n] = database.terrain(schedule.nodes[n].node).value();
+      vertices_[n] = terrainVertices(*tiles_[n], database.grid(tiles_[n]->grid), view, Light{});
+      processed[n] = {&*tiles_[n], &vertices_[n]};
+    }
+  }
+
+ private:
+  std::vector<std::optional<TerrainTile>> tiles_;
+  std::vector<TerrainVertices> vertices_;
+
+ public:
+  std::vector<ProcessedNode> processed;
+};
+
+TEST(BorderStitcher, draws_a_part_as_it_draws_the_whole) {
+  SyntheticGridOptions rough = smallArea();
+  rough.columns = rough.rows = 193;
+  std::mt19937 random(2);
+  std::uint64_t borrowed = 0, drawn = 0;
+  for (const std::vector<RawGrid>& grids :
+       {std::vector<RawGrid>{syntheticGrid(rough)}, insetBetweenPosts()}) {
+    const MemoryDatabase memory = makeTexturedDatabase(grids, 8, 4, [](auto, double, double) {
+      return std::array<std::uint8_t, 4>{1, 2, 3, 255};
+    });
+    const Database& database = memory.database;
+    const SeamIndex seams(database);
+    for (int n = 0; n < 6; ++n) {
+      const ViewTransform view = makeViewTransform(
+          cameraOver(database, 0.3, 0.1 + 0.1 * n, 300, 20.0 * n, -15, 320, 200), EllipsoidShape{});
+      FrameStatistics::Nodes counts;
+      const Schedule schedule = scheduleNodes(database, seams, view, {2.0}, counts).value();
+      const CutIndex index(database, schedule.nodes);
+      const std::vector<std::uint8_t> flags = nodesToProcess(schedule.nodes, index, seams);
+      std::vector<std::uint32_t> all;
+      for (std::uint32_t k = 0; k < flags.size(); ++k) {
+        if (flags[k] != 0) all.push_back(k);
+      }
+      EXPECT_EQ(nodesToProcess(database, schedule.nodes, index, seams, schedule.front_to_back), all);
+      const Processing whole(database, schedule, view, all);
+      const BorderStitcher of_whole(database, schedule.nodes, index, seams, whole.processed);
+      std::vector<std::uint32_t> part;
+      for (const std::uint32_t k : schedule.front_to_back) {
+        if (random() % 4 == 0) part.push_back(k);
+      }
+      const std::vector<std::uint32_t> wanted = nodesToProcess(database, schedule.nodes, index, seams, part);
+      borrowed += wanted.size() - part.size();
+      const Processing some(database, schedule, view, wanted);
+      const BorderStitcher of_part(database, schedule.nodes, index, seams, some.processed);
+      for (const std::uint32_t k : part) {
+        TerrainSplits splits, splits_of_part;
+        TerrainVertices expected = of_whole.vertices(k, splits), got = of_part.vertices(k, splits_of_part);
+        const std::vector<TerrainFace> faces = of_whole.seamFaces(k, expected);
+        EXPECT_EQ(of_part.seamFaces(k, got).size(), faces.size());
+        EXPECT_EQ(got.position, expected.position);
+        EXPECT_EQ(got.intensity, expected.intensity);
+        EXPECT_EQ(splits_of_part.north, splits.north);
+        EXPECT_EQ(splits_of_part.west, splits.west);
+        ++drawn;
+      }
+    }
+  }
+  EXPECT_GT(drawn, 100u);
+  EXPECT_GT(borrowed, 20u);
 }
 
 }  // namespace
