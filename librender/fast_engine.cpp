@@ -12,6 +12,7 @@
 #include "librender/objects/part_meshes.h"
 #include "librender/objects/report_objects.h"
 #include "librender/objects/terrain_object_processor.h"
+#include "librender/objects/transform_error_bound.h"
 #include "librender/raster/depth_frame_buffer.h"
 #include "librender/raster/pretiler.h"
 #include "librender/raster/resolver.h"
@@ -42,6 +43,20 @@ Result<std::vector<std::optional<TerrainTile>>> readTiles(const Database& databa
     tiles[n] = std::move(*read[n]).value();
   }
   return tiles;
+}
+
+// Pixels that a transform other than exact may add. A face at a border takes posts of its neighbours, so all
+// processed nodes count.
+double transformError(const Database& database, const ViewTransform& view, TransformKind transform,
+                      const std::vector<ProcessedNode>& processed) {
+  std::vector<double> of_node(processed.size());
+  tbb::parallel_for(std::size_t{0}, processed.size(), [&](std::size_t n) {
+    if (processed[n].tile == nullptr) return;
+    const TerrainTile& tile = *processed[n].tile;
+    of_node[n] = transformPixelBound(transformErrorBound(transform, tile, database.grid(tile.grid), view),
+                                     tile, processed[n].vertices->position, view);
+  });
+  return of_node.empty() ? 0 : *std::max_element(of_node.begin(), of_node.end());
 }
 
 Result<Picture> renderInArena(const Database& database, const RenderOptions& options,
@@ -83,10 +98,14 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   std::vector<ProcessedNode> processed(cut.size());
   tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
     if (!tiles[n]) return;
-    vertices[n] =
-        terrainVertices(*tiles[n], database.grid(tiles[n]->grid), environment.view, environment.light);
+    vertices[n] = terrainVertices(*tiles[n], database.grid(tiles[n]->grid), environment.view,
+                                  environment.light, options.transform);
     processed[n] = {&*tiles[n], &vertices[n]};
   });
+  if (options.transform != TransformKind::kExact) {
+    statistics.transform_error = transformError(database, environment.view, options.transform, processed);
+    statistics.projected_error += statistics.transform_error;
+  }
   const BorderStitcher stitcher(database, cut, index, seams, processed, environment.color_map != nullptr);
   const Pretiler pretiler(environment.view);
   // Nodes of the terrain, then parts of models.

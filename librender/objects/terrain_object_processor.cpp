@@ -39,9 +39,9 @@ TerrainShading terrainShading(const TerrainTile& tile, const GridGeometry& geome
 }
 
 TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
-                                const ViewTransform& view, const Light& light) {
+                                const ViewTransform& view, const Light& light, TransformKind transform) {
   thread_local TerrainVertexLists lists;
-  terrainVertexLists(tile, geometry, view, light, lists);
+  terrainVertexLists(tile, geometry, view, light, lists, {PostColoring::kByRule, transform});
   const std::size_t count = lists.position.count();
   TerrainVertices vertices;
   vertices.columns = tile.columns;

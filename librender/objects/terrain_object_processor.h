@@ -20,6 +20,7 @@
 #include "libdb/access/vector3.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/illumination.h"
+#include "librender/scene/transform_kind.h"
 
 namespace deltaz {
 
@@ -75,7 +76,8 @@ struct TerrainShading {
 };
 TerrainShading terrainShading(const TerrainTile& tile, const GridGeometry& geometry, const Light& light);
 TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geometry,
-                                const ViewTransform& view, const Light& light);
+                                const ViewTransform& view, const Light& light,
+                                TransformKind transform = TransformKind::kExact);
 
 // True for a face whose upper side is turned away from the eye (or edge-on, or of no extent). Vertices in
 // view space.

@@ -1,11 +1,12 @@
 #include "librender/objects/terrain_vertex_lists.h"
 
 #include "libdb/access/vertex_normals.h"
+#include "librender/objects/transform_posts.h"
 
 namespace deltaz {
 
 void terrainVertexLists(const TerrainTile& tile, const GridGeometry& geometry, const ViewTransform& view,
-                        const Light& light, TerrainVertexLists& lists, PostColoring coloring) {
+                        const Light& light, TerrainVertexLists& lists, const TerrainVertexOptions& options) {
   thread_local TilePosts posts;
   thread_local VectorLists normals;
   if (tile.columns < 1 || tile.rows < 1) {
@@ -17,10 +18,14 @@ void terrainVertexLists(const TerrainTile& tile, const GridGeometry& geometry, c
     return;
   }
   posts.prepare(tile, geometry);
-  terrainViewPositions(posts, view, lists.position);
+  if (options.transform == TransformKind::kExact) {
+    terrainViewPositions(posts, view, lists.position);
+  } else {
+    TileTransform::make(options.transform, tile, geometry).value().apply(view, lists.position);
+  }
   vertexNormals(posts, normals);
   terrainIntensity(normals, light, lists.intensity);
-  if (coloring == PostColoring::kByRule) terrainColors(posts, normals, lists.intensity, lists.color);
+  if (options.coloring == PostColoring::kByRule) terrainColors(posts, normals, lists.intensity, lists.color);
 }
 
 }  // namespace deltaz

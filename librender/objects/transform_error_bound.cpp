@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "librender/scene/view_volume.h"
+
 namespace deltaz {
 namespace {
 
@@ -74,6 +76,37 @@ double transformErrorBound(TransformKind kind, const TerrainTile& tile, const Gr
              g(sums) * (d + w + climb.first + climb.longest) + planarity + exact;
     }
   }
+}
+
+double transformPixelBound(double metres, const TerrainTile& tile, const std::vector<Vector3>& position,
+                           const ViewTransform& view) {
+  if (metres <= 0) return 0;
+  const auto at = [&](int i, int j) {
+    const Vector3& p = position[static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.columns) +
+                                static_cast<std::size_t>(i)];
+    return Vector3{p.x, p.y / view.pixels, p.z / view.pixels};
+  };
+  double least_depth = std::numeric_limits<double>::infinity(), nearest = least_depth, longest_edge = 0;
+  for (int j = 0; j < tile.rows; ++j) {
+    for (int i = 0; i < tile.columns; ++i) {
+      if (!tile.isValid(i, j)) continue;
+      const Vector3 here = at(i, j);
+      least_depth = std::min(least_depth, here.x);
+      nearest = std::min(nearest, length(here));
+      const auto edge_to = [&](int to_i, int to_j) {
+        if (to_i < tile.columns && to_j < tile.rows && tile.isValid(to_i, to_j))
+          longest_edge = std::max(longest_edge, length(at(to_i, to_j) - here));
+      };
+      edge_to(i + 1, j);
+      edge_to(i, j + 1);
+      edge_to(i + 1, j + 1);
+    }
+  }
+  if (std::isinf(nearest)) return 0;
+  const double slant = std::sqrt(1 + largestTangentSquared(view));
+  const double depth = std::max({kHither, least_depth, (nearest - longest_edge / std::sqrt(3.0)) / slant});
+  return depth > metres ? view.pixels * metres * slant / (depth - metres)
+                        : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace deltaz

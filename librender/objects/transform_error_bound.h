@@ -19,6 +19,8 @@
 // Thread-safety: pure function.
 #pragma once
 
+#include <vector>
+
 #include "librender/objects/transform_posts.h"
 
 namespace deltaz {
@@ -27,6 +29,15 @@ namespace deltaz {
 // error of its view coordinates, |(du, dv / pixels, dw / pixels)|. Infinity where single precision overflows.
 // Cost: a pass over the tile's heights.
 double transformErrorBound(TransformKind kind, const TerrainTile& tile, const GridGeometry& geometry,
+                           const ViewTransform& view);
+
+// The same on the picture: pixels that no visible point of the tile's faces is farther off than, when no post
+// is off by more than `metres`. `position` are the tile's posts as they are drawn. With q a drawn point at
+// depth D and p the true one, |p / p.u - q / q.u| <= metres sqrt(1 + t^2) / (D - metres), t the largest
+// tangent in the picture; D is at least the hither plane's, that of the tile's nearest post, and what follows
+// from the distance of its nearest post: no point of a face with edges up to L is farther than L / sqrt(3)
+// from a post. Infinity if D may be within `metres` of the eye.
+double transformPixelBound(double metres, const TerrainTile& tile, const std::vector<Vector3>& position,
                            const ViewTransform& view);
 
 }  // namespace deltaz

@@ -227,20 +227,6 @@ float metresOf(std::int64_t quanta, float quantum) {
 
 }  // namespace
 
-std::string_view transformName(TransformKind kind) {
-  switch (kind) {
-    case TransformKind::kExact:
-      return "exact";
-    case TransformKind::kDelta:
-      return "delta";
-    case TransformKind::kMatrix:
-      return "matrix";
-    case TransformKind::kLocal:
-      return "local";
-  }
-  return "";
-}
-
 Result<TileTransform> TileTransform::make(TransformKind kind, const TerrainTile& tile,
                                           const GridGeometry& geometry) {
   if (!geometry.isGeodetic() && geometry.patches() == nullptr)

@@ -10,15 +10,16 @@
 //         view matrix is relative to the eye, its translation is rounded to single precision once per frame
 //
 // delta and matrix leave out the curvature of the Earth inside a tile (transform_planar.h). How far off each
-// may be is proved by transform_error_bound.h. Both kinds of grid are served. All deliver doubles, so that
-// one can take the other's place, with the same bits on every processor. Thread-safety: const members from
-// any thread.
+// may be is proved by transform_error_bound.h. But for exact, a post that two tiles share comes out
+// differently from each, and the sum of both bounds is how wide a crack may be there: with posts 3" apart and
+// 64 cells, some 3 mm to 1 cm for local, 6 m for delta and matrix. Both kinds of grid are served. All deliver
+// doubles, so that one can take the other's place, with the same bits on every processor. Thread-safety:
+// const members from any thread.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "formats/error.h"
@@ -27,16 +28,9 @@
 #include "librender/objects/transform_planar.h"
 #include "librender/objects/view_positions.h"
 #include "librender/scene/camera.h"
+#include "librender/scene/transform_kind.h"
 
 namespace deltaz {
-
-enum class TransformKind : std::uint8_t { kExact, kDelta, kMatrix, kLocal };
-
-inline constexpr std::array<TransformKind, 4> kTransformKinds{TransformKind::kExact, TransformKind::kDelta,
-                                                              TransformKind::kMatrix, TransformKind::kLocal};
-
-// "exact", "delta", "matrix", "local".
-std::string_view transformName(TransformKind kind);
 
 // A tile made ready for one of the transforms: what does not depend on the view is done once.
 class TileTransform {

@@ -18,6 +18,7 @@
 #include "librender/scene/camera.h"
 #include "librender/scene/pose.h"
 #include "librender/scene/report_schedule.h"
+#include "librender/scene/transform_kind.h"
 
 namespace deltaz {
 
@@ -38,6 +39,9 @@ struct RenderOptions {
   double tolerance = 1.0;  // pixels; 0 draws full resolution; of models alone with LodScheme::kReport
   LodScheme lod = LodScheme::kError;
   ReportLod report_lod;
+  // Of terrain posts. All but exact leave cracks between nodes, of the size of their error
+  // (objects/transform_posts.h). The reference is always exact.
+  TransformKind transform = TransformKind::kExact;
   // >= 0: draw this level, of terrain and of models, whatever the tolerance (tests and benches).
   int fixed_level = -1;
   int threads = 0;  // 0: as many as the machine has
@@ -96,6 +100,7 @@ struct FrameStatistics {
   std::uint64_t color_tiles = 0;      // of the colour map, read
   int level = 0, coarsest_level = 0;  // of detail, drawn: the finest and the coarsest
   double projected_error = 0;         // pixels, bound of what is drawn; infinity: none
+  double transform_error = 0;         // pixels, what of that a transform other than exact may add
   double depth_complexity = 0;        // samples tested per covered pixel
   struct Milliseconds {
     double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;

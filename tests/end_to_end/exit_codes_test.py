@@ -93,6 +93,8 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["--tolerance"], ["dbview", area, *png, "--tolerance", "1,5"]),
             (["--lod"], ["dbview", area, *png, "--lod", "range"]),
             (["--lod", "reference"], ["dbview", area, *png, "--lod", "report", "--engine", "reference"]),
+            (["--transform"], ["dbview", area, *png, "--transform", "float"]),
+            (["--transform", "reference"], ["dbview", area, *png, "--transform", "delta", "--engine", "reference"]),
             (["--engine"], ["dbview", area, *png, "--engine", "ars"]),
             (["--repeat"], ["dbview", area, *png, "--repeat", "0"]),
             (["--color"], ["dbview", area, *png, "--color", "summer"]),

@@ -68,6 +68,38 @@ TEST(Engines, draw_the_same_picture_at_the_poles_the_antimeridian_and_the_equato
   }
 }
 
+// Local is as good as exact to the eye; delta and matrix are off by the Earth's curvature inside a node. Both
+// say so.
+TEST(Engines, draw_with_other_transforms_what_they_state) {
+  const MemoryDatabase area = makeDatabase(smallArea(), 64);
+  RenderOptions options = optionsOf(cameraOver(area.database, 0.4, 0.1, 3000, 10, -20, 320, 200));
+  FrameStatistics of_exact;
+  const Picture exact = draw(EngineKind::kFast, area.database, options, of_exact);
+  EXPECT_EQ(of_exact.transform_error, 0);
+  const auto differing = [&](const Picture& picture) {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < exact.triangle.size(); ++k)
+      count += exact.triangle[k] == picture.triangle[k] ? 0 : 1;
+    return static_cast<double>(count) / static_cast<double>(exact.triangle.size());
+  };
+  double of_local = 0;
+  for (const TransformKind kind : {TransformKind::kLocal, TransformKind::kDelta, TransformKind::kMatrix}) {
+    options.transform = kind;
+    FrameStatistics statistics;
+    const Picture picture = draw(EngineKind::kFast, area.database, options, statistics);
+    EXPECT_GT(statistics.transform_error, 0) << transformName(kind);
+    EXPECT_EQ(statistics.projected_error, of_exact.projected_error + statistics.transform_error);
+    if (kind == TransformKind::kLocal) {
+      of_local = statistics.transform_error;
+      EXPECT_LT(of_local, 0.1);
+      EXPECT_LT(differing(picture), 0.01);
+    } else {
+      EXPECT_GT(statistics.transform_error, 10 * of_local) << transformName(kind);
+      EXPECT_GT(differing(picture), 0.01) << transformName(kind);
+    }
+  }
+}
+
 TEST(Engines, account_for_every_triangle) {
   const MemoryDatabase area = makeDatabase(smallArea());
   for (const EngineKind kind : {EngineKind::kFast, EngineKind::kReference}) {

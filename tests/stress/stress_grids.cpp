@@ -118,6 +118,22 @@ TerrainTile wholeTile(const RawGrid& grid) {
   return tile;
 }
 
+TerrainTile columnsOf(const TerrainTile& tile, int first, int columns) {
+  TerrainTile part = tile;
+  part.first_column += first;
+  part.columns = columns;
+  part.heights.clear();
+  part.valid.clear();
+  part.void_kinds.clear();
+  for (int j = -1; j <= tile.rows; ++j) {
+    for (int i = first - 1; i <= first + columns; ++i) {
+      part.heights.push_back(tile.height(i, j));
+      part.valid.push_back(tile.isValid(i, j) ? 1 : 0);
+    }
+  }
+  return part;
+}
+
 RawGrid alternatingGrid(std::int32_t height, Rational quantum) {
   SyntheticGridOptions options;
   options.spacing_latitude = options.spacing_longitude = {3, 1};

@@ -33,6 +33,9 @@ void setPlainAxis(GridAxis& axis, const AxisOrigin& origin, double first, double
 // All posts of a grid as one tile of level 0, with a void ring.
 TerrainTile wholeTile(const RawGrid& grid);
 
+// Columns [first, first + columns) of a tile as a tile of its own, its ring from the tile.
+TerrainTile columnsOf(const TerrainTile& tile, int first, int columns);
+
 // 33 x 33 posts 3 arc-seconds apart, of two heights that change from post to post.
 RawGrid alternatingGrid(std::int32_t height, Rational quantum);
 

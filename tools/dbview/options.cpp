@@ -1,5 +1,6 @@
 #include "tools/dbview/options.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -55,6 +56,13 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
          "error is bounded, and there are cracks (default: error)")
       ->check(CLI::IsMember({"error", "report"}))
       ->type_name("SCHEME");
+  app.add_option(
+         "--transform", options.transform,
+         "How terrain posts are placed: exact, on the curved Earth; local, in single precision around "
+         "each node; delta, the sums of 1983; matrix, a flat node. All but exact leave cracks "
+         "(default: exact)")
+      ->check(CLI::IsMember({"exact", "local", "delta", "matrix"}))
+      ->type_name("TRANSFORM");
   app.add_option("--engine", options.engine,
                  "fast, or reference: double precision, every triangle (default: fast)")
       ->check(CLI::IsMember({"fast", "reference"}))
@@ -87,10 +95,18 @@ Result<View> parseView(const ViewOptions& options) {
     return usageError("--lod", "the reference engine draws every triangle, there are no levels to choose", {},
                       "Leave out --lod report, or --engine reference");
   }
+  const auto transform =
+      std::find_if(kTransformKinds.begin(), kTransformKinds.end(),
+                   [&](TransformKind kind) { return transformName(kind) == options.transform; });
+  if (view.engine == EngineKind::kReference && *transform != TransformKind::kExact) {
+    return usageError("--transform", "the reference engine is always exact", {},
+                      fmt::format("Leave out --transform {}, or --engine reference", options.transform));
+  }
   DELTAZ_TRY(checkOutputs(options));
   DELTAZ_TRY_ASSIGN(RenderOptions render, parseScene(options.scene, options.common));
   render.tolerance = tolerance;
   render.lod = lod;
+  render.transform = *transform;
   view.render = std::move(render);
   return view;
 }

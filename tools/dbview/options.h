@@ -15,6 +15,7 @@ struct ViewOptions {
   SceneOptions scene;
   std::string tolerance = "1";
   std::string lod = "error";
+  std::string transform = "exact";
   std::string engine = "fast";
   std::string statistics_path, depth_path;
   std::string repeat = "1";

@@ -69,6 +69,7 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
   json["level"] = first.level;
   json["coarsest_level"] = first.coarsest_level;
   json["projected_error"] = finiteOrNull(first.projected_error);
+  json["transform_error"] = finiteOrNull(first.transform_error);
   json["stages_ms"] = stagesJson(repeats);
   const Spread total =
       spreadOfTimes(repeats, [](const FrameStatistics::Milliseconds& times) { return times.total; });
@@ -99,6 +100,7 @@ Json statisticsJson(const std::string& area, const View& view, std::span<const F
   json["engine"] = engineName(view.engine);
   json["tolerance"] = view.render.tolerance;
   json["lod"] = lodName(view.render.lod);
+  json["transform"] = transformName(view.render.transform);
   json["repeat"] = repeats.size();
   json["camera"] = cameraJson(view.render.camera);
   json["sun"] = {{"azimuth", view.render.sun.azimuth}, {"elevation", view.render.sun.elevation}};

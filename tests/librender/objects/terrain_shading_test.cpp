@@ -99,7 +99,7 @@ TEST(TerrainVertexLists, are_positions_light_and_colours_of_the_same_posts) {
   EXPECT_EQ(lists.color.red, shading.colors.red);
   const double* const before = lists.position.u.data();
   TerrainVertexLists uncolored;
-  terrainVertexLists(tile, geometry, view, kLight, uncolored, PostColoring::kNone);
+  terrainVertexLists(tile, geometry, view, kLight, uncolored, {PostColoring::kNone});
   EXPECT_EQ(uncolored.intensity, shading.intensity);
   EXPECT_TRUE(uncolored.color.red.empty());
   terrainVertexLists(tile, geometry, view, kLight, lists);

@@ -9,6 +9,7 @@
 
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/objects/transform_error_bound.h"
+#include "librender/scene/view_volume.h"
 #include "tests/stress/scalar_transforms.h"
 #include "tests/stress/stress_grids.h"
 #include "tests/stress/true_positions.h"
@@ -196,6 +197,100 @@ TEST(TransformPosts, projected_grids_are_served_within_the_bound) {
       EXPECT_LE(observed, bound) << transformName(kind) << " from " << height;
     }
   }
+}
+
+// What a crack between two nodes is: the post they share, twice.
+TEST(TransformPosts, a_post_that_two_tiles_share_is_apart_by_no_more_than_both_bounds) {
+  for (const bool geodetic : {true, false}) {
+    const RawGrid grid = geodetic ? syntheticGrid({}) : projectedGrid(121, 121, 30);
+    const GridGeometry geometry(grid.header, grid.patches);
+    const TerrainTile whole = wholeTile(grid), west = columnsOf(whole, 0, 61),
+                      east = columnsOf(whole, 60, 61);
+    const GeodeticPoint corner = geometry.geodeticAt(whole.first_column, whole.first_row);
+    for (const double height : {3000.0, 1e5}) {
+      const ViewTransform view =
+          makeViewTransform(cameraAt(corner.latitude, corner.longitude, height), grid.header.ellipsoid);
+      for (const TransformKind kind : kTransformKinds) {
+        const std::vector<Vector3> of_west = positionsOf(kind, west, geometry, view),
+                                   of_east = positionsOf(kind, east, geometry, view);
+        double widest = 0;
+        for (std::size_t j = 0; j < 121; ++j) {
+          const Vector3 d = of_west[j * 61 + 60] - of_east[j * 61];
+          widest = std::max(widest, std::hypot(d.x, d.y / view.pixels, d.z / view.pixels));
+        }
+        EXPECT_LE(widest, transformErrorBound(kind, west, geometry, view) +
+                              transformErrorBound(kind, east, geometry, view))
+            << transformName(kind);
+        if (kind == TransformKind::kExact) {
+          EXPECT_EQ(widest, 0) << "exact leaves no cracks";
+        } else {
+          EXPECT_GT(widest, 0) << transformName(kind);
+        }
+      }
+    }
+  }
+}
+
+TEST(TransformPixelBound, holds_for_every_point_in_the_picture) {
+  for (const TransformKind kind : kTransformKinds) {
+    double closest = 0;
+    EXPECT_TRUE(rc::check(std::string(transformName(kind)), [&] {
+      SyntheticGridOptions options;
+      options.seed = *rc::gen::inRange<std::uint32_t>(1, 1000);
+      options.spacing_latitude = options.spacing_longitude = {*rc::gen::element<std::int64_t>(1, 3, 30), 1};
+      options.columns = options.rows = *rc::gen::inRange(3, 40);
+      const RawGrid grid = syntheticGrid(options);
+      const GridGeometry geometry(grid.header);
+      const TerrainTile tile = wholeTile(grid);
+      Camera camera =
+          cameraAt(options.south, options.west, std::pow(10.0, *rc::gen::inRange(0, 600) / 100.0));
+      camera.heading = *rc::gen::inRange(0, 90);
+      camera.pitch = *rc::gen::inRange(-89, 10);
+      camera.field_of_view = *rc::gen::inRange(10, 120);
+      const ViewTransform view = makeViewTransform(camera, grid.header.ellipsoid);
+      const std::vector<Vector3> drawn = transformPosts(kind, tile, geometry, view).value();
+      const std::vector<LongVector> truth = truePositions(tile, geometry);
+      const double bound =
+          transformPixelBound(transformErrorBound(kind, tile, geometry, view), tile, drawn, view);
+      // Points all over the faces: the corners and the middles of the cells' diagonals.
+      for (int j = 0; j + 1 < tile.rows; ++j) {
+        for (int i = 0; i + 1 < tile.columns; ++i) {
+          const auto a = static_cast<std::size_t>(j * tile.columns + i);
+          const std::size_t b = a + static_cast<std::size_t>(tile.columns) + 1;
+          for (const double t : {0.0, 0.5}) {
+            const Vector3 q = drawn[a] + (drawn[b] - drawn[a]) * t;
+            if (q.x < kHither || std::abs(q.y / q.x) > camera.width / 2.0 ||
+                std::abs(q.z / q.x) > camera.height / 2.0)
+              continue;
+            const LongVector of_a = trueView(view, truth[a]), of_b = trueView(view, truth[b]);
+            const auto between = [&](long double from, long double to) {
+              return static_cast<double>(from + (to - from) * static_cast<long double>(t));
+            };
+            const double u = between(of_a.x, of_b.x);
+            const double shift = std::hypot(q.y / q.x - between(of_a.y, of_b.y) / u * view.pixels,
+                                            q.z / q.x - between(of_a.z, of_b.z) / u * view.pixels);
+            // What the doubles of a picture's coordinates leave.
+            RC_ASSERT(shift <= bound + 1e-9);
+            if (std::isfinite(bound)) closest = std::max(closest, shift / bound);
+          }
+        }
+      }
+    }));
+    std::printf("%s: at most %.3f of its bound in pixels\n", std::string(transformName(kind)).c_str(),
+                closest);
+    EXPECT_GT(closest, 0.01) << "a bound so far off says nothing";
+  }
+}
+
+TEST(TransformPixelBound, has_no_say_on_what_may_touch_the_eye) {
+  const RawGrid grid = syntheticGrid({});
+  const GridGeometry geometry(grid.header);
+  const TerrainTile tile = wholeTile(grid);
+  Camera camera = cameraAt(43.5, -79.5, 2500);
+  const ViewTransform view = makeViewTransform(camera, grid.header.ellipsoid);
+  const std::vector<Vector3> drawn = transformPosts(TransformKind::kExact, tile, geometry, view).value();
+  EXPECT_EQ(transformPixelBound(0, tile, drawn, view), 0);
+  EXPECT_TRUE(std::isinf(transformPixelBound(1e6, tile, drawn, view)));
 }
 
 TEST(TransformPosts, a_projected_grid_without_patches_is_refused) {
