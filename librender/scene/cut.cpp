@@ -1,6 +1,7 @@
 #include "librender/scene/cut.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace deltaz {
 
@@ -28,14 +29,21 @@ CutIndex::CutIndex(const Database& database, const std::vector<CutNode>& nodes) 
     const GridHeader& header = database.grid(grid).header();
     grids_.push_back({header.level_count, header.leaf_cells});
   }
-  places_.reserve(nodes.size());
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    places_.emplace(positionOf(nodes[n].node.record), static_cast<std::uint32_t>(n));
+  places_.resize(std::bit_ceil(std::max<std::size_t>(2, 2 * nodes.size())));
+  const std::size_t mask = places_.size() - 1;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const NodePosition position = positionOf(nodes[n].node.record);
+    std::size_t slot = NodePositionHash()(position) & mask;
+    while (places_[slot].node != kNone && !(places_[slot].position == position)) slot = (slot + 1) & mask;
+    if (places_[slot].node == kNone) places_[slot] = {position, static_cast<std::uint32_t>(n)};
+  }
 }
 
 std::uint32_t CutIndex::at(const NodePosition& position) const {
-  const auto found = places_.find(position);
-  return found == places_.end() ? kNone : found->second;
+  const std::size_t mask = places_.size() - 1;
+  std::size_t slot = NodePositionHash()(position) & mask;
+  while (places_[slot].node != kNone && !(places_[slot].position == position)) slot = (slot + 1) & mask;
+  return places_[slot].node;
 }
 
 std::uint32_t CutIndex::holding(std::uint16_t grid, std::int64_t column, std::int64_t row) const {

@@ -7,8 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include "libdb/access/database.h"
@@ -54,7 +52,12 @@ class CutIndex {
     std::int64_t leaf_cells = 1;
   };
   std::vector<Grid> grids_;
-  std::unordered_map<NodePosition, std::uint32_t, NodePositionHash> places_;
+  // Open addressing with linear probing, at most half full: looked into for every post of every border.
+  struct Place {
+    NodePosition position;
+    std::uint32_t node = kNone;
+  };
+  std::vector<Place> places_;  // a power of two of them
 };
 
 // The position of the node of the same level beyond a side.
