@@ -11,10 +11,10 @@
 //
 // delta and matrix leave out the curvature of the Earth inside a tile (transform_planar.h). How far off each
 // may be is proved by transform_error_bound.h. But for exact, a post that two tiles share comes out
-// differently from each, and the sum of both bounds is how wide a crack may be there: with posts 3" apart and
-// 64 cells, some 3 mm to 1 cm for local, 6 m for delta and matrix. Both kinds of grid are served. All deliver
-// doubles, so that one can take the other's place, with the same bits on every processor. Thread-safety:
-// const members from any thread.
+// differently from each, and the sum of both bounds is how wide a crack may be there: with 64 cells of 3",
+// latitude 45, seen from 1 km, 14 mm for local (0.4 mm are found), 4.6 m for delta and matrix (1 m). Both
+// kinds of grid are served. All deliver doubles, so that one can take the other's place, with the same bits
+// on every processor. Thread-safety: const members from any thread.
 #pragma once
 
 #include <array>
