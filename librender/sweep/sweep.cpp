@@ -31,6 +31,7 @@ class Sweeper {
     options.camera = view.camera;
     options.tolerance = setting.tolerance;
     options.lod = setting.lod;
+    options.transform = setting.transform;
     return engine_->render(*databases_[setting.database], options, statistics);
   }
 

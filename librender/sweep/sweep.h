@@ -31,6 +31,7 @@ struct SweepSetting {
   std::size_t database = 0;  // index into what is swept; 0 is the user's own, the others are made of it
   double tolerance = 1;      // pixels; with LodScheme::kReport of models alone
   LodScheme lod = LodScheme::kError;
+  TransformKind transform = TransformKind::kExact;
 };
 
 struct SweepRequest {

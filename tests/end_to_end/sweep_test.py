@@ -8,6 +8,12 @@ from harness import RAINIER, build, case, main, no_leftovers, require, run, stri
 SMALL = ["--size", "160x100", "--repeat", "2"]
 
 
+def near_ground(folder):
+    views = folder / "near.json"
+    views.write_text(json.dumps({"views": [{"name": "near", "eye": "46.85,-121.76,200agl", "look": "180,-30"}]}))
+    return views
+
+
 def names_of(report):
     return [view["name"] for view in report["views"]]
 
@@ -98,6 +104,15 @@ def ranges_of_the_report_are_one_row_without_a_bound(folder):
 
 
 @case
+def a_flat_tile_displaces_what_the_curved_one_does_not(folder):
+    report = run("dbview", "sweep", build(folder, RAINIER), *SMALL, "--transforms", "exact,local,delta,matrix", "--tolerances", "0", "--views",
+                 near_ground(folder), "--json").json()
+    errors = {row["setting"]["transform"]: row["displacement_pixels"]["largest"] for row in report["all_views"]}
+    require(list(errors) == ["exact", "local", "delta", "matrix"], errors)
+    require(errors["local"] < errors["exact"] + 0.05 and errors["delta"] > errors["exact"] + 0.05, errors)
+
+
+@case
 def views_of_a_file_are_drawn(folder):
     area, views = build(folder), folder / "views.json"
     views.write_text(json.dumps({"views": [{"name": "south", "eye": "46.0,7.2,3000", "look": "0,-20", "fov": 40},
@@ -133,6 +148,7 @@ def wrong_options_are_named(folder):
     mine.write_text("mine")
     for words, options in [(["--tolerances"], ["--tolerances", "1,x"]), (["--tolerances", "twice"], ["--tolerances", "1,1.0"]),
                            (["--tolerances"], ["--tolerances", "-1"]), (["--quanta"], ["--quanta", "0"]), (["--lods"], ["--lods", "range"]),
+                           (["--transforms", "euler"], ["--transforms", "exact,euler"]),
                            (["--repeat"], ["--repeat", "0"]), (["--reference"], ["--reference", "high"]),
                            (["--report", "png"], ["--report", "png=x"]), (["--report"], ["--report", "svg="]),
                            (["one file"], ["--report", f"json={folder}/x,svg={folder}/x"]),

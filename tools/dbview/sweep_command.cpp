@@ -79,13 +79,13 @@ Result<std::vector<SweepView>> viewsOf(const Database& database, const SweepPlan
 std::vector<SweepSetting> settingsOf(const SweepPlan& plan, std::size_t databases) {
   std::vector<SweepSetting> settings;
   for (std::size_t database = 0; database < databases; ++database) {
-    for (const LodScheme lod : plan.lods) {
-      if (lod == LodScheme::kReport) {
+    for (const TransformKind transform : plan.transforms) {
+      for (const LodScheme lod : plan.lods) {
         // Ranges know no tolerance; models are drawn at the default one.
-        settings.push_back({database, 1, lod});
-        continue;
+        const std::vector<double> by_range = {1};
+        for (const double tolerance : lod == LodScheme::kReport ? by_range : plan.tolerances)
+          settings.push_back({database, tolerance, lod, transform});
       }
-      for (const double tolerance : plan.tolerances) settings.push_back({database, tolerance, lod});
     }
   }
   return settings;

@@ -22,6 +22,7 @@ Json rowsJson(const SweepReport& report, const std::vector<SweepRow>& rows) {
     const bool by_range = row.setting.lod == LodScheme::kReport;
     one["setting"] = {{"tolerance", by_range ? Json(nullptr) : Json(row.setting.tolerance)},
                       {"lod", lodName(row.setting.lod)},
+                      {"transform", transformName(row.setting.transform)},
                       {"quantum", report.quanta[row.setting.database]}};
     one["frame_ms"] = {{"min", row.milliseconds.minimum},
                        {"median", row.milliseconds.median},

@@ -73,6 +73,21 @@ Result<std::vector<LodScheme>> parseLods(const std::string& text) {
   return values;
 }
 
+Result<std::vector<TransformKind>> parseTransforms(const std::string& text) {
+  DELTAZ_TRY_ASSIGN(const std::vector<std::string> parts, listOf(text, "--transforms"));
+  std::vector<TransformKind> values;
+  for (const std::string& part : parts) {
+    const auto kind = std::find_if(kTransformKinds.begin(), kTransformKinds.end(),
+                                   [&](TransformKind each) { return transformName(each) == part; });
+    if (kind == kTransformKinds.end())
+      return usageError("--transforms", fmt::format("'{}' is none of exact, local, delta, matrix", part));
+    if (std::find(values.begin(), values.end(), *kind) != values.end())
+      return repeatedValue("--transforms", part);
+    values.push_back(*kind);
+  }
+  return values;
+}
+
 Status parseReports(const SweepOptions& options, SweepPlan& plan) {
   for (const std::string& report : options.reports) {
     const bool json = report.starts_with("json=");
@@ -110,6 +125,9 @@ void addSweepOptions(CLI::App& app, SweepOptions& options) {
   app.add_option("--lods", options.lods,
                  "Level of detail by error, or by range as in 1983, or both: error,report (default: error)")
       ->type_name("LOD,...");
+  app.add_option("--transforms", options.transforms,
+                 "Transforms of posts to try: exact,local,delta,matrix (default: exact)")
+      ->type_name("TRANSFORM,...");
   app.add_option("--reference", options.reference,
                  "Tolerance of the picture that colours are held against, pixels (default: 0, full "
                  "resolution)")
@@ -134,6 +152,7 @@ Result<SweepPlan> parseSweep(const SweepOptions& options) {
     return usageError("--views", "--views and --eye exclude each other");
   DELTAZ_TRY_ASSIGN(plan.tolerances, parseTolerances(options.tolerances));
   DELTAZ_TRY_ASSIGN(plan.lods, parseLods(options.lods));
+  DELTAZ_TRY_ASSIGN(plan.transforms, parseTransforms(options.transforms));
   DELTAZ_TRY_ASSIGN(plan.quanta, parseQuanta(options.quanta));
   DELTAZ_TRY_ASSIGN(plan.reference_tolerance,
                     parseNumberBetween(options.reference, "--reference", 0, kLargestTolerance));

@@ -17,6 +17,7 @@ struct SweepOptions {
   std::string tolerances = "0.25,0.5,1,2,4";
   std::string quanta;
   std::string lods = "error";
+  std::string transforms = "exact";
   std::string reference = "0";
   std::string repeat = "5";
   std::vector<std::string> reports;
@@ -32,6 +33,7 @@ struct SweepPlan {
   std::vector<NamedCameraRequest> views;  // of --views
   std::vector<double> tolerances;
   std::vector<LodScheme> lods;
+  std::vector<TransformKind> transforms;
   std::vector<Rational> quanta;  // beside the database's own
   double reference_tolerance = 0;
   int repeats = 5;

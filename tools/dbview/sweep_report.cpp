@@ -68,6 +68,12 @@ std::vector<SweptKnob> sweptKnobs(const SweepReport& report) {
                        return std::string(setting.lod == LodScheme::kReport ? "by range" : "by error");
                      }});
   }
+  if (differ([](const SweepSetting& setting) { return setting.transform; })) {
+    const auto name = [](const SweepSetting& setting) {
+      return std::string(transformName(setting.transform));
+    };
+    knobs.push_back({"transform", name, name});
+  }
   if (differ([](const SweepSetting& setting) { return setting.database; })) {
     knobs.push_back({"quantum m",
                      [&](const SweepSetting& setting) { return report.quanta[setting.database]; },
