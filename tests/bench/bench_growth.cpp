@@ -103,7 +103,7 @@ Result<Camera> cameraFor(const Engine& engine, const Database& smallest, const V
   DELTAZ_TRY_ASSIGN(const std::optional<double> ground,
                     groundHeight(smallest, camera.eye.latitude, camera.eye.longitude));
   // Smaller areas are looked at from less far.
-  const double far = request.height < 100 ? 1 : static_cast<double>(settings.sides.front()) / 1201;
+  const double far = request.height < 100 ? 1 : std::min(1.0, area.north - area.south);
   camera.eye.height = request.height * far + (request.absolute ? 0 : ground.value_or(0));
   camera.heading = request.heading;
   camera.field_of_view = request.field_of_view;
