@@ -2,6 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/grid_culler.cpp"
+#include <algorithm>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -86,19 +87,40 @@ class FaceCuller {
       const auto corner = [&](const std::uint8_t* index) {
         return hn::IfThenElseZero(in, hn::PromoteTo(d_, hn::LoadU(bytes, index + n)));
       };
-      const Vec a = corner(faces.first), b = corner(faces.second), c = corner(faces.third);
-      const Vec ax = hn::GatherIndex(d_, faces.snapped_x, a), ay = hn::GatherIndex(d_, faces.snapped_y, a);
-      const Vec bx = hn::GatherIndex(d_, faces.snapped_x, b), by = hn::GatherIndex(d_, faces.snapped_y, b);
-      const Vec cx = hn::GatherIndex(d_, faces.snapped_x, c), cy = hn::GatherIndex(d_, faces.snapped_y, c);
-      counts.in += hn::CountTrue(d_, in);
-      const Vec area =
-          hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)), hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
-      cull(joined({hn::Min(ax, bx), hn::Max(ax, bx)}, cx), joined({hn::Min(ay, by), hn::Max(ay, by)}, cy),
-           area, in, hn::Iota(d_, static_cast<std::int32_t>(n)), out, counts);
+      cullCorners(corner(faces.first), corner(faces.second), corner(faces.third), faces.snapped_x,
+                  faces.snapped_y, in, n, out, counts);
+    }
+  }
+
+  void cullByCorners(const CornerFaces& faces, CulledFaces& out, CullCounts& counts) const {
+    const auto* const words = reinterpret_cast<const std::int32_t*>(faces.words);
+    const std::size_t lanes = hn::Lanes(d_);
+    for (std::size_t n = 0; n < faces.count; n += lanes) {
+      const std::size_t left = faces.count - n;
+      // Nothing is read behind the last face.
+      std::int32_t rest[4 * 16] = {};
+      if (left < lanes) std::copy_n(words + 4 * n, 4 * left, rest);
+      Vec a, b, c, unused;
+      hn::LoadInterleaved4(d_, left < lanes ? rest : words + 4 * n, a, b, c, unused);
+      cullCorners(a, c, b, faces.snapped_x, faces.snapped_y, hn::FirstN(d_, left), n, out, counts);
     }
   }
 
  private:
+  // Faces n, n + 1, ... by their corners in the order they run clockwise on the screen.
+  HWY_INLINE void cullCorners(Vec a, Vec b, Vec c, const std::int32_t* snapped_x,
+                              const std::int32_t* snapped_y, Mask in, std::size_t n, CulledFaces& out,
+                              CullCounts& counts) const {
+    const Vec ax = hn::GatherIndex(d_, snapped_x, a), ay = hn::GatherIndex(d_, snapped_y, a);
+    const Vec bx = hn::GatherIndex(d_, snapped_x, b), by = hn::GatherIndex(d_, snapped_y, b);
+    const Vec cx = hn::GatherIndex(d_, snapped_x, c), cy = hn::GatherIndex(d_, snapped_y, c);
+    counts.in += hn::CountTrue(d_, in);
+    const Vec area =
+        hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)), hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
+    cull(joined({hn::Min(ax, bx), hn::Max(ax, bx)}, cx), joined({hn::Min(ay, by), hn::Max(ay, by)}, cy), area,
+         in, hn::Iota(d_, static_cast<std::int32_t>(n)), out, counts);
+  }
+
   // Of ranges without a vertex before the hither plane, or with nothing but such.
   HWY_INLINE Mask isBeside(Range x, Range y) const {
     const Vec zero = hn::Zero(d_), hither = hn::Set(d_, kBeforeHitherCoordinate);
@@ -159,6 +181,10 @@ void cullRow(const GridRow& row, int width, int height, CulledFaces& out, Culled
   FaceCuller(width, height).cullRow(row, out, top, counts);
 }
 
+void cullByCorners(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
+  FaceCuller(width, height).cullByCorners(faces, out, counts);
+}
+
 void cullIndexed(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
   FaceCuller(width, height).cullIndexed(faces, out, counts);
 }
@@ -177,6 +203,7 @@ namespace deltaz {
 namespace {
 HWY_EXPORT(cullRow);
 HWY_EXPORT(cullIndexed);
+HWY_EXPORT(cullByCorners);
 }  // namespace
 
 void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts) {
@@ -194,6 +221,11 @@ void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFa
                       CullCounts& counts) {
   out.count = 0;
   HWY_DYNAMIC_DISPATCH(cullIndexed)(faces, width, height, out, counts);
+}
+
+void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
+  out.count = 0;
+  HWY_DYNAMIC_DISPATCH(cullByCorners)(faces, width, height, out, counts);
 }
 
 }  // namespace deltaz

@@ -41,6 +41,14 @@ struct CulledFaces {
 };
 inline constexpr std::uint32_t kExceptional = 0x00FF00FF;  // first after last: no range
 
+// Faces of any mesh: four words a face, its three vertices counter-clockwise seen from its front, and one
+// that is not looked at.
+struct CornerFaces {
+  const std::uint32_t* words;
+  std::size_t count;
+  const std::int32_t *snapped_x, *snapped_y;  // of the vertices
+};
+
 struct CullCounts {
   std::uint64_t in = 0, outside = 0, back_facing = 0, no_sample = 0;
 };
@@ -54,6 +62,10 @@ struct IndexedFaces {
 };
 // The same tests; CulledFaces::face is n, in ascending order. Room for count + kRowPadding entries.
 void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts);
+
+// The same tests; CulledFaces::face is the face's number, in ascending order. Room for count + kRowPadding
+// entries.
+void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts);
 
 // Room for 2 * (cells + kRowPadding) entries in both lists. Adds to `counts`.
 void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts);

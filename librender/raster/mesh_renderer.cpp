@@ -264,9 +264,9 @@ void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVe
   const ClippedFace clipped = clipFace(positions);
   RasterTriangle triangle;
   triangle.node = triangle.face = triangle.clipped = 0;
-  // Pieces of one face are counted by the worst that befell it.
+  // A face of several pieces is counted once: by the worst that befell all of them, or as drawn.
   TriangleFate fate = TriangleFate::kOutside;
-  std::uint64_t kept = 0;
+  std::uint32_t number = 0;
   for (std::size_t k = 1; k + 1 < clipped.corners; ++k) {
     const std::array<std::size_t, 3> corner = {0, k, k + 1};
     std::array<std::int32_t, 3> x{}, y{};
@@ -281,12 +281,10 @@ void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVe
       fate = std::max(fate, placed.fate);
       continue;
     }
-    writer.add(triangle, placed.tiles);
-    ++kept;
+    if (number == 0) number = writer.numberForPieces();
+    writer.addPiece(triangle, placed.tiles, number);
   }
-  // Every piece is counted as a triangle where it is drawn.
-  if (kept > 1) counts.in += kept - 1;
-  if (kept > 0) return;
+  if (number != 0) return;
   counts.outside += fate == TriangleFate::kOutside ? 1 : 0;
   counts.back_facing += fate == TriangleFate::kBackFacing ? 1 : 0;
   counts.no_sample += fate == TriangleFate::kNoSample ? 1 : 0;

@@ -45,6 +45,10 @@ std::uint32_t TileBins::Writer::crossingNumber() {
 
 void TileBins::Writer::addToSeveral(RasterTriangle& triangle, const TileRange& tiles) {
   triangle.crossing = 1 + crossingNumber();
+  copyTo(triangle, tiles);
+}
+
+void TileBins::Writer::copyTo(const RasterTriangle& triangle, const TileRange& tiles) {
   for (std::int32_t i = tiles.first_i; i <= tiles.last_i; ++i) {
     for (std::int32_t j = tiles.first_j; j <= tiles.last_j; ++j) *next(bin(j, i)) = triangle;
   }

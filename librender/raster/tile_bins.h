@@ -44,6 +44,13 @@ class TileBins {
       triangle.crossing = 0;
       return triangle;
     }
+    // A number for a face that is added in several pieces, to count it once.
+    std::uint32_t numberForPieces() { return 1 + crossingNumber(); }
+    // Adds a piece of a face that has been given `number`.
+    void addPiece(RasterTriangle& triangle, const TileRange& tiles, std::uint32_t number) {
+      triangle.crossing = number;
+      copyTo(triangle, tiles);
+    }
     // Adds the triangle to every tile of the range, which lies within the picture.
     void add(RasterTriangle& triangle, const TileRange& tiles) {
       if (tiles.first_j == tiles.last_j && tiles.first_i == tiles.last_i) {
@@ -73,6 +80,7 @@ class TileBins {
     }
     void open(Bin& bin);
     void addToSeveral(RasterTriangle& triangle, const TileRange& tiles);
+    void copyTo(const RasterTriangle& triangle, const TileRange& tiles);
     RasterTriangle* takeChunk();
     std::uint32_t crossingNumber();
 
@@ -98,7 +106,7 @@ class TileBins {
   }
   // The runs of a tile in the order of submission; `segments` is replaced.
   void segmentsOf(std::size_t tile, std::vector<Segment>& segments) const;
-  // Triangles that touch several tiles.
+  // Triangles that touch several tiles, and faces in pieces.
   std::uint64_t crossingTriangles() const;
   // Upper bound of RasterTriangle::crossing; not all numbers below it are used.
   std::uint32_t crossingCount() const { return crossing_count_.load(std::memory_order_relaxed); }

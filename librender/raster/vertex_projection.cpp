@@ -2,6 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/vertex_projection.cpp"
+#include <algorithm>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -78,26 +79,30 @@ void projectArrays(const MeshProjection& projection, const float* x, const float
   }
 }
 
-void projectDoubles(const double* u, const double* v, const double* w, std::size_t count, int width,
-                    int height, const ProjectedVertices& out) {
+void projectDoubles(const double* positions, std::size_t count, int width, int height,
+                    const ProjectedVertices& out) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> df;
   const hn::RebindToSigned<decltype(df)> di;
-  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
-    const auto depth = hn::LoadU(d, u + n);
-    const auto before = hn::Lt(depth, hn::Set(d, kHither));
-    const auto inverse_u = hn::Div(hn::Set(d, 1.0), hn::IfThenElse(before, hn::Set(d, 1.0), depth));
-    const auto guard = hn::Set(d, 2.0 * kGuardBand);
-    const auto position = [&](const double* p) {
-      return hn::DemoteTo(df,
-                          hn::Min(hn::Max(hn::Mul(hn::LoadU(d, p + n), inverse_u), hn::Neg(guard)), guard));
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t n = 0; n < count; n += lanes) {
+    // Nothing is read behind the last position.
+    double rest[3 * 8] = {};
+    if (count - n < lanes) std::copy_n(positions + 3 * n, 3 * (count - n), rest);
+    hn::Vec<decltype(d)> u, v, w;
+    hn::LoadInterleaved3(d, count - n < lanes ? rest : positions + 3 * n, u, v, w);
+    const auto before = hn::Lt(u, hn::Set(d, kHither));
+    const auto inverse_u = hn::Div(hn::Set(d, 1.0), hn::IfThenElse(before, hn::Set(d, 1.0), u));
+    const auto limit = hn::Set(d, 2.0 * kGuardBand);
+    const auto on_screen = [&](hn::Vec<decltype(d)> p) {
+      return hn::DemoteTo(df, hn::Min(hn::Max(hn::Mul(p, inverse_u), hn::Neg(limit)), limit));
     };
-    const auto sx = position(v), sy = position(w);
-    hn::StoreInterleaved4(sx, sy, hn::DemoteTo(df, inverse_u),
+    const auto x = on_screen(v), y = on_screen(w);
+    hn::StoreInterleaved4(x, y, hn::DemoteTo(df, inverse_u),
                           hn::BitCast(df, hn::Iota(di, static_cast<std::int32_t>(n))), df,
                           reinterpret_cast<float*>(out.vertex + n));
-    const auto narrow = hn::DemoteTo(df, hn::IfThenElse(before, hn::Set(d, 1.0), hn::Zero(d)));
-    storeSnapped(df, sx, sy, hn::Gt(narrow, hn::Zero(df)), width, height, out, n);
+    const auto before_as_float = hn::DemoteTo(df, hn::IfThenElse(before, hn::Set(d, 1.0), hn::Zero(d)));
+    storeSnapped(df, x, y, hn::Gt(before_as_float, hn::Zero(df)), width, height, out, n);
   }
 }
 
@@ -138,9 +143,11 @@ void MeshProjection::project(const float* x, const float* y, const float* z, std
   HWY_DYNAMIC_DISPATCH(projectArrays)(*this, x, y, z, count, out);
 }
 
-void projectViewPositions(const double* u, const double* v, const double* w, std::size_t count, int width,
-                          int height, const ProjectedVertices& out) {
-  HWY_DYNAMIC_DISPATCH(projectDoubles)(u, v, w, count, width, height, out);
+void projectViewPositions(std::span<const Vector3> positions, int width, int height,
+                          const ProjectedVertices& out) {
+  static_assert(sizeof(Vector3) == 3 * sizeof(double));
+  HWY_DYNAMIC_DISPATCH(projectDoubles)
+  (reinterpret_cast<const double*>(positions.data()), positions.size(), width, height, out);
 }
 
 }  // namespace deltaz

@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "libdb/access/vector3.h"
 #include "librender/raster/raster_triangle.h"
 #include "librender/scene/camera.h"
 
@@ -39,9 +41,8 @@ struct MeshProjection {
                const ProjectedArrays& out) const;
 };
 
-// (U, V, W) in double, as the object processors make them (u, v, w of camera.h). The payload is the vertex'
-// index.
-void projectViewPositions(const double* u, const double* v, const double* w, std::size_t count, int width,
-                          int height, const ProjectedVertices& out);
+// (U, V, W) in double, as the object processors make them (camera.h). The payload is the vertex' index.
+void projectViewPositions(std::span<const Vector3> positions, int width, int height,
+                          const ProjectedVertices& out);
 
 }  // namespace deltaz
