@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <utility>
 #include <vector>
 
 #include "librender/objects/border_stitcher.h"
@@ -13,7 +15,6 @@
 #include "librender/objects/report_objects.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/objects/transform_error_bound.h"
-#include "librender/raster/depth_frame_buffer.h"
 #include "librender/raster/pretiler.h"
 #include "librender/raster/resolver.h"
 #include "librender/raster/tiler.h"
@@ -108,31 +109,44 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   }
   const BorderStitcher stitcher(database, cut, index, seams, processed, environment.color_map != nullptr);
   const Pretiler pretiler(environment.view);
-  // Nodes of the terrain, then parts of models.
-  std::vector<PretiledNode> pretiled(cut.size() + models.parts.size());
+  // Nodes of the terrain from front to back, so that what lies behind is found hidden, then parts of models.
+  const std::vector<std::uint32_t>& drawn = schedule.front_to_back;
+  std::vector<PretiledNode> pretiled(drawn.size() + models.parts.size());
   std::vector<FrameStatistics::Triangles> of_node(pretiled.size());
-  std::vector<FrameStatistics::Objects> objects(by_range ? cut.size() : 0);
-  tbb::parallel_for(std::size_t{0}, cut.size(), [&](std::size_t n) {
-    if (!cut[n].in_view) return;
+  std::vector<FrameStatistics::Objects> objects(by_range ? drawn.size() : 0);
+  TileBins bins;
+  bins.reset(environment.view.width, environment.view.height,
+             static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  const auto process = [&](std::size_t n, std::uint64_t in, std::uint64_t back_facing) {
+    TileBins::Writer& writer =
+        bins.writer(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()));
+    writer.begin(static_cast<std::uint32_t>(n));
+    pretiler.process(pretiled[n], static_cast<std::uint32_t>(n), writer);
+    of_node[n] = {in, back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
+  };
+  tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t n) {
+    const std::uint32_t of_cut = drawn[n];
+    const TerrainTile& tile = *tiles[of_cut];
     TerrainSplits splits;
-    TerrainVertices stitched = stitcher.vertices(static_cast<std::uint32_t>(n), splits);
-    const std::vector<std::uint8_t> replaced = seams.replacedFaces(*tiles[n]);
-    TerrainFaces faces = by_range ? reportFaces(*tiles[n], database.grid(tiles[n]->grid), environment.view,
+    TerrainVertices stitched = stitcher.vertices(of_cut, splits);
+    const std::vector<std::uint8_t> replaced = seams.replacedFaces(tile);
+    TerrainFaces faces = by_range ? reportFaces(tile, database.grid(tile.grid), environment.view,
                                                 options.report_lod, stitched.position, replaced, objects[n])
-                                  : terrainFaces(*tiles[n], stitched.position, splits, replaced);
-    for (const TerrainFace& face : stitcher.seamFaces(static_cast<std::uint32_t>(n), stitched))
+                                  : terrainFaces(tile, stitched.position, splits, replaced);
+    for (const TerrainFace& face : stitcher.seamFaces(of_cut, stitched))
       addFace(faces, stitched.position, face);
-    pretiled[n].grid = cut[n].node.record.grid;
-    pretiler.process(stitched, faces, cut[n].node.number, pretiled[n]);
-    of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
+    pretiled[n] = PretiledNode::ofTerrain(cut[of_cut].node.record.grid, cut[of_cut].node.number,
+                                          std::move(stitched), std::move(faces.front));
+    process(n, faces.in, faces.back_facing);
   });
   tbb::parallel_for(std::size_t{0}, models.parts.size(), [&](std::size_t p) {
     const DrawnPart& part = models.parts[p];
-    const ModelFaces faces = modelFaces(meshes.of(p), part.to_earth, environment.view, environment.light);
-    const std::size_t n = cut.size() + p;
-    pretiler.process(faces, part.instance, pretiled[n]);
-    of_node[n] = {faces.in, faces.back_facing, pretiled[n].clipped, pretiled[n].no_sample, 0};
+    ModelFaces faces = modelFaces(meshes.of(p), part.to_earth, environment.view, environment.light);
+    const std::uint64_t in = faces.in, back_facing = faces.back_facing;
+    pretiled[drawn.size() + p] = PretiledNode::ofModel(part.instance, std::move(faces));
+    process(drawn.size() + p, in, back_facing);
   });
+  bins.finish();
   for (const FrameStatistics::Triangles& counts : of_node) {
     statistics.triangles.in += counts.in;
     statistics.triangles.back_facing += counts.back_facing;
@@ -142,8 +156,8 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   for (const FrameStatistics::Objects& counts : objects) statistics.objects += counts;
   statistics.milliseconds.objects = watch.lap();
 
-  DepthFrameBuffer buffer(options.camera.width, options.camera.height);
-  const TilerStatistics tiled = tile(pretiled, buffer);
+  const TiledFrame frame = tile(bins, pretiled, environment.view);
+  const TilerStatistics& tiled = frame.statistics;
   statistics.triangles.drawn = tiled.faces_drawn;
   statistics.triangles.no_sample += tiled.no_sample;
   statistics.samples.tested = tiled.tested;
@@ -153,15 +167,15 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   // What is seen is settled, so only the colours that are seen are read.
   TextureStore textures;
   if (environment.color_map != nullptr) {
-    DELTAZ_TRY_ASSIGN(
-        textures, TextureStore::read(*environment.color_map, visibleSquares(environment, pretiled, buffer)));
+    DELTAZ_TRY_ASSIGN(textures,
+                      TextureStore::read(*environment.color_map, visibleSquares(environment, frame)));
   }
   statistics.color_tiles = textures.tileCount();
   statistics.bytes_read = database.bytesRead() - bytes_before;
   statistics.milliseconds.read += watch.lap();
 
   Picture picture = makePicture(options);
-  const ResolverStatistics resolved = resolve(environment, pretiled, buffer, textures, picture);
+  const ResolverStatistics resolved = resolve(environment, frame, textures, picture);
   statistics.samples.shaded = resolved.shaded;
   statistics.depth_complexity =
       resolved.covered > 0 ? static_cast<double>(tiled.tested) / static_cast<double>(resolved.covered) : 0;

@@ -3,99 +3,19 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 
+#include "librender/raster/clipper.h"
+#include "librender/raster/grid_culler.h"
+#include "librender/raster/triangle_placement.h"
+#include "librender/raster/vertex_projection.h"
 #include "librender/scene/view_volume.h"
 
 namespace deltaz {
 namespace {
 
-// Where a vertex lies outside the picture; a face with a common bit in all three outcodes is outside.
-enum Outcode : std::uint8_t {
-  kInside = 0,
-  kBeforeHither = 1,
-  kLeft = 2,
-  kRight = 4,
-  kAbove = 8,
-  kBelow = 16,
-  kOutsideGuardBand = 32,  // needs clipping; never a reason to reject
-};
-constexpr std::uint8_t kRejecting = kBeforeHither | kLeft | kRight | kAbove | kBelow;
-
-// Boxes up to this many samples are searched at once for a covered one; most faces of a distant terrain have
-// none.
-constexpr std::int32_t kSmallBox = 4;
-
-struct PlacedVertex {
-  ScreenVertex screen;  // set unless before the hither plane
-  std::int32_t x = 0, y = 0;
-  std::uint8_t outcode = kInside;
-};
-
-PlacedVertex place(const ViewTransform& view, const Vector3& p) {
-  PlacedVertex placed;
-  // Half spaces through the eye, valid for any sign of U.
-  const double across = view.width / 2.0 * p.x, downward = view.height / 2.0 * p.x;
-  if (p.x < kHither) placed.outcode |= kBeforeHither;
-  if (p.y < -across) placed.outcode |= kLeft;
-  if (p.y > across) placed.outcode |= kRight;
-  if (p.z < -downward) placed.outcode |= kAbove;
-  if (p.z > downward) placed.outcode |= kBelow;
-  if ((placed.outcode & kBeforeHither) != 0) return placed;
-  const double guard = kGuardBand * p.x;
-  if (p.y < -guard || p.y > guard || p.z < -guard || p.z > guard) {
-    placed.outcode |= kOutsideGuardBand;
-    return placed;
-  }
-  placed.screen = project(view, p);
-  placed.x = snap(placed.screen.j);
-  placed.y = snap(placed.screen.i);
-  return placed;
-}
-
-// A corner of a face while it is clipped, with its barycentric weights.
-struct ClipVertex {
-  Vector3 position;
-  double weight1 = 0, weight2 = 0;
-};
-
-// A convex polygon in view space; five planes add at most one corner each.
-class ClipPolygon {
- public:
-  explicit ClipPolygon(const std::array<ClipVertex, 3>& face) : size_(3) {
-    std::copy(face.begin(), face.end(), corners_.begin());
-  }
-
-  // Keeps what has plane . position >= offset.
-  void clip(const Vector3& plane, double offset) {
-    std::array<ClipVertex, 8> kept;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < size_; ++k) {
-      const ClipVertex &from = corners_[k], &to = corners_[k + 1 < size_ ? k + 1 : 0];
-      const double from_side = dot(plane, from.position) - offset, to_side = dot(plane, to.position) - offset;
-      if (from_side >= 0) kept[count++] = from;
-      if ((from_side >= 0) != (to_side >= 0)) {
-        kept[count++] =
-            from_side >= 0 ? crossing(from, from_side, to, to_side) : crossing(to, to_side, from, from_side);
-      }
-    }
-    corners_ = kept;
-    size_ = count;
-  }
-
-  std::span<const ClipVertex> corners() const { return {corners_.data(), size_}; }
-
- private:
-  static ClipVertex crossing(const ClipVertex& inside, double inside_side, const ClipVertex& outside,
-                             double outside_side) {
-    const double t = inside_side / (inside_side - outside_side);
-    return {inside.position + (outside.position - inside.position) * t,
-            inside.weight1 + (outside.weight1 - inside.weight1) * t,
-            inside.weight2 + (outside.weight2 - inside.weight2) * t};
-  }
-
-  std::array<ClipVertex, 8> corners_;
-  std::size_t size_;
-};
+// Faces that are tested before the next ones.
+constexpr std::size_t kFacesAtOnce = 1024;
 
 struct WeightedScreenVertex {
   ScreenVertex screen;
@@ -133,8 +53,15 @@ std::array<float, 3> toFloats(const LinearColor& color) {
   return {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue)};
 }
 
-void setAttributes(const TerrainVertices& vertices, const TerrainFace& face, std::uint32_t record,
-                   FacePlanes& planes) {
+void setAttributes(const PretiledNode& node, std::uint32_t number, FacePlanes& planes) {
+  const TerrainFace& face = node.faces[number];
+  planes.identity = std::uint64_t{node.identity} << 32 | face.identity;
+  planes.surface = node.surface;
+  if (node.surface == Surface::kModel) {
+    for (std::size_t k = 0; k < 3; ++k) planes.color[k] = toFloats(node.model.front[number].color[k]);
+    return;
+  }
+  const TerrainVertices& vertices = node.vertices;
   for (std::size_t k = 0; k < 3; ++k) {
     planes.color[k] = toFloats(vertices.color[face.vertex[k]]);
     planes.intensity[k] = static_cast<float>(vertices.intensity[face.vertex[k]]);
@@ -144,130 +71,134 @@ void setAttributes(const TerrainVertices& vertices, const TerrainFace& face, std
     const GridCoordinates& to = vertices.texture[face.vertex[k + 1]];
     planes.texture_steps[k] = {to.column - planes.texture.column, to.row - planes.texture.row};
   }
-  planes.identity = std::uint64_t{record} << 32 | face.identity;
 }
 
-// False only if the triangle covers no sample of the picture; small boxes are searched, larger ones are left
-// to the tiler, which counts the few of them that turn out empty.
-bool mayCoverSamples(const SnappedTriangle& triangle, int width, int height) {
-  const SampleBounds bounds = sampleBounds(triangle, width, height);
-  if (bounds.empty() || doubledArea(triangle) <= 0) return false;
-  if (bounds.last_j - bounds.first_j >= kSmallBox || bounds.last_i - bounds.first_i >= kSmallBox) return true;
-  bool covers = false;
-  forEachSample(triangle, bounds, [&](std::int32_t, std::int32_t) { covers = true; });
-  return covers;
+std::array<Vector3, 3> cornersOf(const PretiledNode& node, std::uint32_t face) {
+  const std::vector<Vector3>& position = node.positions();
+  const auto& vertex = node.faces[face].vertex;
+  return {position[vertex[0]], position[vertex[1]], position[vertex[2]]};
 }
 
 }  // namespace
 
-Pretiler::Pretiler(const ViewTransform& view) : view_(view) {}
-
-void Pretiler::process(const TerrainVertices& vertices, const TerrainFaces& faces, std::uint32_t record,
-                       PretiledNode& out) const {
-  const auto set_attributes = [&](const TerrainFace& face, FacePlanes& planes) {
-    setAttributes(vertices, face, record, planes);
-  };
-  processFaces(vertices.position, faces.front, set_attributes, out);
+PretiledNode PretiledNode::ofTerrain(std::uint16_t grid, std::uint32_t record, TerrainVertices vertices,
+                                     std::vector<TerrainFace> front) {
+  PretiledNode node;
+  node.grid = grid;
+  node.identity = record;
+  node.vertices = std::move(vertices);
+  node.faces = std::move(front);
+  return node;
 }
 
-void Pretiler::process(const ModelFaces& faces, std::uint32_t instance, PretiledNode& out) const {
-  const auto set_attributes = [&](const ModelFace& face, FacePlanes& planes) {
-    for (std::size_t k = 0; k < 3; ++k) planes.color[k] = toFloats(face.color[k]);
-    planes.identity = std::uint64_t{instance} << 32 | face.identity;
-    planes.surface = Surface::kModel;
-  };
-  processFaces(faces.position, faces.front, set_attributes, out);
+PretiledNode PretiledNode::ofModel(std::uint32_t instance, ModelFaces model) {
+  PretiledNode node;
+  node.surface = Surface::kModel;
+  node.identity = instance;
+  node.faces.reserve(model.front.size());
+  for (const ModelFace& face : model.front) node.faces.push_back({face.vertex, face.identity});
+  node.model = std::move(model);
+  return node;
 }
 
-template <typename Face, typename SetAttributes>
-void Pretiler::processFaces(const std::vector<Vector3>& position, const std::vector<Face>& faces,
-                            const SetAttributes& set_attributes, PretiledNode& out) const {
-  // Each vertex is projected and snapped once, though about six faces use it.
-  std::vector<PlacedVertex> placed;
-  placed.reserve(position.size());
-  for (const Vector3& p : position) placed.push_back(place(view_, p));
-
-  for (const Face& face : faces) {
-    const PlacedVertex &a = placed[face.vertex[0]], &b = placed[face.vertex[1]], &c = placed[face.vertex[2]];
-    if ((a.outcode & b.outcode & c.outcode & kRejecting) != 0) {
-      ++out.clipped;
-      continue;
-    }
-    if (((a.outcode | b.outcode | c.outcode) & (kBeforeHither | kOutsideGuardBand)) != 0) {
-      FacePlanes planes;
-      set_attributes(face, planes);
-      clipAndEmit({position[face.vertex[0]], position[face.vertex[1]], position[face.vertex[2]]}, planes,
-                  out);
-      continue;
-    }
-    SnappedTriangle triangle;
-    triangle.x = {a.x, c.x, b.x};
-    triangle.y = {a.y, c.y, b.y};
-    if (!mayCoverSamples(triangle, view_.width, view_.height)) {
-      ++out.no_sample;
-      continue;
-    }
-    triangle.face = static_cast<std::uint32_t>(out.faces.size());
-    out.triangles.push_back(triangle);
-    FacePlanes& planes = out.faces.emplace_back();
-    setPlanes({{{a.screen, 0, 0}, {b.screen, 1, 0}, {c.screen, 0, 1}}}, planes);
-    const auto [least, greatest] = std::minmax({a.screen.inverse_u, b.screen.inverse_u, c.screen.inverse_u});
-    planes.least = least;
-    planes.greatest = greatest;
-    set_attributes(face, planes);
-  }
-}
-
-void Pretiler::clipAndEmit(const std::array<Vector3, 3>& corners_of_face, FacePlanes planes,
-                           PretiledNode& out) const {
-  ClipPolygon polygon({{{corners_of_face[0], 0, 0}, {corners_of_face[1], 1, 0}, {corners_of_face[2], 0, 1}}});
-  polygon.clip({1, 0, 0}, kHither);
-  if (polygon.corners().size() < 3) {
-    ++out.clipped;
-    return;
-  }
-  std::vector<WeightedScreenVertex> corners;
+FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::uint32_t face) {
+  FacePlanes planes;
+  setAttributes(node, face, planes);
+  ClipPolygon polygon(cornersOf(node, face));
+  polygon.clipToHither();
+  std::array<WeightedScreenVertex, 8> corners;
+  std::size_t count = 0;
   for (const ClipVertex& corner : polygon.corners()) {
-    corners.push_back({project(view_, corner.position), corner.weight1, corner.weight2});
-    const double inverse_u = corners.back().screen.inverse_u;
-    planes.least = corners.size() == 1 ? inverse_u : std::min(planes.least, inverse_u);
+    corners[count] = {project(view, corner.position), corner.weight1, corner.weight2};
+    const double inverse_u = corners[count].screen.inverse_u;
+    planes.least = count == 0 ? inverse_u : std::min(planes.least, inverse_u);
     planes.greatest = std::max(planes.greatest, inverse_u);
+    ++count;
   }
+  if (count < 3) return planes;
   // Of a quadrilateral the larger half has the better determined gradients.
   const bool second_half =
-      corners.size() == 4 && screenArea(corners[0].screen, corners[2].screen, corners[3].screen) >
-                                 screenArea(corners[0].screen, corners[1].screen, corners[2].screen);
+      count == 4 && screenArea(corners[0].screen, corners[2].screen, corners[3].screen) >
+                        screenArea(corners[0].screen, corners[1].screen, corners[2].screen);
   setPlanes({corners[0], corners[second_half ? 2 : 1], corners[second_half ? 3 : 2]}, planes);
+  return planes;
+}
 
-  const double guard = kGuardBand;
-  polygon.clip({guard, 1, 0}, 0);
-  polygon.clip({guard, -1, 0}, 0);
-  polygon.clip({guard, 0, 1}, 0);
-  polygon.clip({guard, 0, -1}, 0);
-  std::vector<std::array<std::int32_t, 2>> snapped;
-  for (const ClipVertex& corner : polygon.corners()) {
-    const ScreenVertex screen = project(view_, corner.position);
-    snapped.push_back({snap(screen.j), snap(screen.i)});
+void Pretiler::process(PretiledNode& node, std::uint32_t number, TileBins::Writer& bins) const {
+  // Each vertex is projected and snapped once, though about six faces use it.
+  const std::vector<Vector3>& positions = node.positions();
+  const std::size_t room = positions.size() + kRowPadding;
+  std::vector<RasterVertex> vertex(room);
+  std::vector<std::int32_t> snapped_x(room), snapped_y(room);
+  projectViewPositions(positions, view_.width, view_.height,
+                       {vertex.data(), snapped_x.data(), snapped_y.data()});
+
+  static_assert(sizeof(TerrainFace) == 4 * sizeof(std::uint32_t));
+  std::array<std::uint32_t, kFacesAtOnce + kRowPadding> kept, tiles;
+  CullCounts counts;
+  for (std::size_t first = 0; first < node.faces.size(); first += kFacesAtOnce) {
+    const std::size_t count = std::min(kFacesAtOnce, node.faces.size() - first);
+    CulledFaces faces{kept.data(), tiles.data(), 0};
+    cullCornerFaces({node.faces[first].vertex.data(), count, snapped_x.data(), snapped_y.data()}, view_.width,
+                    view_.height, faces, counts);
+    for (std::size_t n = 0; n < faces.count; ++n) {
+      const auto face = static_cast<std::uint32_t>(first + faces.face[n]);
+      const std::uint32_t range = faces.tiles[n];
+      if (range == kExceptional) {
+        processClipped(node, number, face, bins);
+        continue;
+      }
+      const auto& corner = node.faces[face].vertex;
+      RasterTriangle triangle;
+      // Counter-clockwise seen from the front runs clockwise on the screen in the opposite order.
+      triangle.vertex[0] = vertex[corner[0]];
+      triangle.vertex[1] = vertex[corner[2]];
+      triangle.vertex[2] = vertex[corner[1]];
+      triangle.node = number;
+      triangle.face = face;
+      triangle.clipped = 0;
+      bins.add(triangle,
+               {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
+                static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)});
+    }
   }
-  if (snapped.size() < 3) {
-    ++out.clipped;
+  node.clipped += counts.outside;
+  // A front face whose snapped vertices run the other way is narrower than the snap and covers nothing.
+  node.no_sample += counts.back_facing + counts.no_sample;
+}
+
+void Pretiler::processClipped(PretiledNode& node, std::uint32_t number, std::uint32_t face,
+                              TileBins::Writer& bins) const {
+  const std::array<Vector3, 3> corners = cornersOf(node, face);
+  if (isOutsidePicture(corners, view_.width, view_.height)) {
+    ++node.clipped;
     return;
   }
-
-  const auto index = static_cast<std::uint32_t>(out.faces.size());
-  bool emitted = false;
-  for (std::size_t k = 1; k + 1 < snapped.size(); ++k) {
-    const auto &a = snapped[0], &b = snapped[k + 1], &c = snapped[k];
-    const SnappedTriangle triangle{{a[0], b[0], c[0]}, {a[1], b[1], c[1]}, index};
-    if (!mayCoverSamples(triangle, view_.width, view_.height)) continue;
-    out.triangles.push_back(triangle);
-    emitted = true;
+  const ClippedFace clipped = clipFace({corners[0], corners[2], corners[1]});
+  if (clipped.corners < 3) {
+    ++node.clipped;
+    return;
   }
-  if (emitted) {
-    out.faces.push_back(planes);
-  } else {
-    ++out.no_sample;
+  RasterTriangle triangle;
+  triangle.node = number;
+  triangle.face = face;
+  triangle.clipped = 0;
+  // All pieces share one number, so that the face is counted once.
+  std::uint32_t shared = 0;
+  for (std::size_t k = 1; k + 1 < clipped.corners; ++k) {
+    const std::array<std::size_t, 3> corner = {0, k, k + 1};
+    std::array<std::int32_t, 3> x{}, y{};
+    for (std::size_t n = 0; n < 3; ++n) {
+      triangle.vertex[n] = clipped.corner[corner[n]];
+      x[n] = snappedCoordinate(triangle.vertex[n].x, view_.width);
+      y[n] = snappedCoordinate(triangle.vertex[n].y, view_.height);
+    }
+    const TrianglePlacement placed = placeTriangle(x, y, view_.width, view_.height);
+    if (placed.fate != TriangleFate::kKept) continue;
+    if (shared == 0) shared = bins.numberForPieces();
+    bins.addPiece(triangle, placed.tiles, shared);
   }
+  if (shared == 0) ++node.no_sample;
 }
 
 }  // namespace deltaz

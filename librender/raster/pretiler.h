@@ -1,12 +1,13 @@
-// The pretiler (report 5.3): view-space faces -> triangles on the screen, ready to be tiled.
+// The pretiler (report 5.3): view-space faces -> triangles on the screen, binned by tile.
 //
-// In order: outcode rejection against the picture; hither clip in three dimensions, linear in U, V, W and
-// attributes; projection; guard-band clip; snap to 1/256 pixel; rejection of what covers no sample;
-// gradients, once per face, by vertex differences in double from the unsnapped vertices.
+// Vertices are projected and snapped many at a time and faces tested many at a time (vertex_projection.h,
+// grid_culler.h): beside the picture, turned away, between the samples. What is left is copied into the bins
+// of the tiles it touches. The few faces that reach before the hither plane or beyond the guard band are
+// clipped, in three dimensions, linear in U, V, W (clipper.h). Gradients are computed for faces that are
+// seen, once per face, by vertex differences in double from the unsnapped vertices (FacePlanes).
 //
-// Watertight: a clipped point is always computed from the inside end of its edge towards the outside end, so
-// that the two faces of an edge get the same point; a position is snapped the same way wherever it comes
-// from. Thread-safety: const members from any thread.
+// Watertight: a position is snapped the same way wherever it comes from, and a clipped point is the same for
+// the two faces of its edge. Thread-safety: const members from any thread.
 #pragma once
 
 #include <array>
@@ -15,13 +16,13 @@
 
 #include "librender/objects/model_object_processor.h"
 #include "librender/objects/terrain_object_processor.h"
-#include "librender/raster/coverage.h"
+#include "librender/raster/tile_bins.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/render.h"
 
 namespace deltaz {
 
-// Unsnapped position on the screen: what triangle set-up is given.
+// Unsnapped position on the screen.
 struct ScreenVertex {
   double j = 0, i = 0, inverse_u = 0;
 };
@@ -43,7 +44,7 @@ struct ScreenPlane {
   double at(double dj, double di) const { return value + (per_j * dj + per_i * di); }
 };
 
-// What all pieces of a face share. An attribute c of the vertices is (c0 weight0 + c1 weight1 + c2 weight2)
+// What all pixels of a face share. An attribute c of the vertices is (c0 weight0 + c1 weight1 + c2 weight2)
 // with barycentric weights; those divided by U are linear on the screen, as 1/U is.
 struct FacePlanes {
   double anchor_j = 0, anchor_i = 0;  // a projected vertex
@@ -65,31 +66,39 @@ struct FacePlanes {
   }
 };
 
-// What comes of one terrain node, or of one part of a model.
+// The front faces of one terrain node, or of one part of a model, with their vertices.
 struct PretiledNode {
-  std::uint16_t grid = 0;  // whose colours its faces show
-  std::vector<FacePlanes> faces;
-  std::vector<SnappedTriangle> triangles;
+  Surface surface = Surface::kTerrain;
+  std::uint16_t grid = 0;      // whose colours its faces show
+  std::uint32_t identity = 0;  // number of the node's record, or of the instance
+  TerrainVertices vertices;    // of a terrain node
+  std::vector<TerrainFace> faces;
+  ModelFaces model;  // of a part of a model; its faces, with no colours, stand in `faces` as well
   std::uint64_t clipped = 0, no_sample = 0;  // faces that left nothing: outside the picture, between samples
+
+  static PretiledNode ofTerrain(std::uint16_t grid, std::uint32_t record, TerrainVertices vertices,
+                                std::vector<TerrainFace> front);
+  static PretiledNode ofModel(std::uint32_t instance, ModelFaces model);
+  const std::vector<Vector3>& positions() const {
+    return surface == Surface::kModel ? model.position : vertices.position;
+  }
 };
+
+// Pre: some of the face lies in front of the hither plane.
+FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::uint32_t face);
 
 class Pretiler {
  public:
-  explicit Pretiler(const ViewTransform& view);
+  explicit Pretiler(const ViewTransform& view) : view_(view) {}
 
-  // Appends the node's front faces to `out` in their order, and leaves out.grid as it is. `record` is the
-  // node's record number.
-  void process(const TerrainVertices& vertices, const TerrainFaces& faces, std::uint32_t record,
-               PretiledNode& out) const;
-  // The same for the front faces of a part of the model that stands as `instance`.
-  void process(const ModelFaces& faces, std::uint32_t instance, PretiledNode& out) const;
+  // Adds the node's faces to the bins as RasterTriangle::node `number`, in their order, and counts those that
+  // leave nothing.
+  void process(PretiledNode& node, std::uint32_t number, TileBins::Writer& bins) const;
 
  private:
-  // `set_attributes(face, planes)` gives a face's planes all that does not depend on where it is.
-  template <typename Face, typename SetAttributes>
-  void processFaces(const std::vector<Vector3>& position, const std::vector<Face>& faces,
-                    const SetAttributes& set_attributes, PretiledNode& out) const;
-  void clipAndEmit(const std::array<Vector3, 3>& corners_of_face, FacePlanes planes, PretiledNode& out) const;
+  // False, and counted, if nothing is left of the face.
+  void processClipped(PretiledNode& node, std::uint32_t number, std::uint32_t face,
+                      TileBins::Writer& bins) const;
 
   ViewTransform view_;
 };

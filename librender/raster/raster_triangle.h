@@ -13,8 +13,8 @@ namespace deltaz {
 inline constexpr int kSubPixelBits = 8;
 inline constexpr int kSubPixels = 1 << kSubPixelBits;
 
-// How far from the picture's centre positions may lie, pixels. Pictures are at most 16,384 pixels wide and high;
-// edge functions of triangles in the guard band fit into 32 bits within a tile.
+// How far from the picture's centre positions may lie, pixels. Pictures are at most 16,384 pixels wide and
+// high; edge functions of triangles in the guard band fit into 32 bits within a tile.
 inline constexpr int kGuardBand = 9216;
 
 // No member initialisers: they are made by the million, and written whole.

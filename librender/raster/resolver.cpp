@@ -39,20 +39,27 @@ Shade shadeAt(const FacePlanes& face, int j, int i, double u) {
 
 // The face seen through a pixel; none where it is empty or the sea, at `sea_u`, is nearer.
 struct Seen {
+  bool covered = false;  // by some face, behind the sea or not
   const FacePlanes* face = nullptr;
   std::uint16_t grid = 0;
   double inverse_u = 0, u = 0;
 };
 
-Seen seenAt(const std::vector<PretiledNode>& nodes, const DepthFrameBuffer& buffer, int j, int i,
-            double sea_u) {
-  const DepthFrameBuffer::Pixel& nearest = buffer.at(j, i);
-  if (nearest.empty()) return {};
-  const PretiledNode& node = nodes[nearest.node];
-  const FacePlanes& face = node.faces[nearest.face];
-  const double inverse_u = face.inverseDepthAt(j, i), u = 1 / inverse_u;
-  if (u > sea_u) return {};
-  return {&face, node.grid, inverse_u, u};
+Seen seenAt(const TiledFrame& frame, int j, int i, double sea_u) {
+  const auto tile = static_cast<std::size_t>(i / kTileSide) * static_cast<std::size_t>(frame.across) +
+                    static_cast<std::size_t>(j / kTileSide);
+  const SettledTile::Seen nearest = frame.tiles[tile].at(j % kTileSide, i % kTileSide);
+  if (nearest.face == nullptr) return {};
+  const double inverse_u = nearest.face->inverseDepthAt(j, i), u = 1 / inverse_u;
+  Seen seen;
+  seen.covered = true;
+  if (u <= sea_u) {
+    seen.face = nearest.face;
+    seen.grid = nearest.grid;
+    seen.inverse_u = inverse_u;
+    seen.u = u;
+  }
+  return seen;
 }
 
 std::optional<TextureRequest> requestAt(const Environment& environment, const Seen& seen, int j, int i) {
@@ -67,13 +74,11 @@ void sortUnique(std::vector<TextureSquare>& squares) {
 
 }  // namespace
 
-std::vector<TextureSquare> visibleSquares(const Environment& environment,
-                                          const std::vector<PretiledNode>& nodes,
-                                          const DepthFrameBuffer& buffer) {
+std::vector<TextureSquare> visibleSquares(const Environment& environment, const TiledFrame& frame) {
   std::vector<TextureSquare> squares;
   if (environment.color_map == nullptr) return squares;
-  std::vector<std::vector<TextureSquare>> of_row(static_cast<std::size_t>(buffer.height()));
-  tbb::parallel_for(0, buffer.height(), [&](int i) {
+  std::vector<std::vector<TextureSquare>> of_row(static_cast<std::size_t>(frame.height));
+  tbb::parallel_for(0, frame.height, [&](int i) {
     std::vector<TextureSquare>& wanted = of_row[static_cast<std::size_t>(i)];
     // Neighbouring pixels mostly want the same two squares, one of an even level.
     std::array<std::optional<TextureSquare>, 2> last;
@@ -82,9 +87,8 @@ std::vector<TextureSquare> visibleSquares(const Environment& environment,
       if (of_parity != square) wanted.push_back(square);
       of_parity = square;
     };
-    for (int j = 0; j < buffer.width(); ++j) {
-      if (buffer.at(j, i).empty()) continue;
-      const Seen seen = seenAt(nodes, buffer, j, i, environment.sea.depth(environment.view.ray(j, i)));
+    for (int j = 0; j < frame.width; ++j) {
+      const Seen seen = seenAt(frame, j, i, environment.sea.depth(environment.view.ray(j, i)));
       if (seen.face == nullptr) continue;
       const std::optional<TextureRequest> request = requestAt(environment, seen, j, i);
       if (!request) continue;
@@ -98,19 +102,20 @@ std::vector<TextureSquare> visibleSquares(const Environment& environment,
   return squares;
 }
 
-ResolverStatistics resolve(const Environment& environment, const std::vector<PretiledNode>& nodes,
-                           const DepthFrameBuffer& buffer, const TextureStore& textures, Picture& picture) {
-  std::vector<ResolverStatistics> of_row(static_cast<std::size_t>(buffer.height()));
-  tbb::parallel_for(0, buffer.height(), [&](int i) {
+ResolverStatistics resolve(const Environment& environment, const TiledFrame& frame,
+                           const TextureStore& textures, Picture& picture) {
+  std::vector<ResolverStatistics> of_row(static_cast<std::size_t>(frame.height));
+  tbb::parallel_for(0, frame.height, [&](int i) {
     ResolverStatistics counts;
     TextureReader reader(textures);
-    for (int j = 0; j < buffer.width(); ++j) {
-      const std::size_t pixel = static_cast<std::size_t>(i) * static_cast<std::size_t>(buffer.width()) +
-                                static_cast<std::size_t>(j);
+    for (int j = 0; j < frame.width; ++j) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(i) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(j);
       const Vector3 ray = environment.view.ray(j, i);
       const double sea_u = environment.sea.depth(ray);
-      counts.covered += buffer.at(j, i).empty() ? 0 : 1;
-      if (const Seen seen = seenAt(nodes, buffer, j, i, sea_u); seen.face != nullptr) {
+      const Seen seen = seenAt(frame, j, i, sea_u);
+      counts.covered += seen.covered ? 1 : 0;
+      if (seen.face != nullptr) {
         ++counts.shaded;
         const Shade shade = shadeAt(*seen.face, j, i, seen.u);
         LinearColor color = shade.color;

@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "librender/raster/depth_frame_buffer.h"
-#include "librender/raster/pretiler.h"
+#include "librender/raster/tiler.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/texture_store.h"
 
@@ -21,12 +20,10 @@ struct ResolverStatistics {
 };
 
 // What the pixels of terrain that are seen need of the environment's colour map; each once, in order.
-std::vector<TextureSquare> visibleSquares(const Environment& environment,
-                                          const std::vector<PretiledNode>& nodes,
-                                          const DepthFrameBuffer& buffer);
+std::vector<TextureSquare> visibleSquares(const Environment& environment, const TiledFrame& frame);
 
 // `textures` holds at least what visibleSquares asks for.
-ResolverStatistics resolve(const Environment& environment, const std::vector<PretiledNode>& nodes,
-                           const DepthFrameBuffer& buffer, const TextureStore& textures, Picture& picture);
+ResolverStatistics resolve(const Environment& environment, const TiledFrame& frame,
+                           const TextureStore& textures, Picture& picture);
 
 }  // namespace deltaz

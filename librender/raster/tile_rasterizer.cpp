@@ -40,8 +40,9 @@ alignas(64) inline constexpr std::int32_t kLaneI[kBlockPixels] = {0, 0, 0, 0, 1,
 alignas(64) inline constexpr float kLaneX[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 alignas(64) inline constexpr float kLaneY[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-// Edge functions of triangles in the guard band change by less than this from one pixel of a tile to any other, or
-// to the block behind the last: where they start beyond it only their sign counts, and sums stay in 32 bits.
+// Edge functions of triangles in the guard band change by less than this from one pixel of a tile to any
+// other, or to the block behind the last: where they start beyond it only their sign counts, and sums stay in
+// 32 bits.
 inline constexpr double kSaturation = 1 << 30;
 static_assert(2 * 2.0 * kGuardBand * kSubPixels * (kTileSide + 2 * kBlockSide) < kSaturation);
 // Gradients of slivers that are lines but for rounding; products with distances stay finite.

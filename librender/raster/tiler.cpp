@@ -1,128 +1,103 @@
 #include "librender/raster/tiler.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 namespace deltaz {
 namespace {
 
-// Which of a node's triangles touch which tiles: for each tile of a rectangle of tiles a run of triangle
-// indices, in the order of submission.
-class NodeBins {
- public:
-  NodeBins() = default;
-  NodeBins(const PretiledNode& node, int width, int height) {
-    std::vector<SampleBounds> touched;  // in tiles
-    touched.reserve(node.triangles.size());
-    for (const SnappedTriangle& triangle : node.triangles) {
-      const SampleBounds samples = sampleBounds(triangle, width, height);
-      touched.push_back({samples.first_j / kTileSide, samples.last_j / kTileSide, samples.first_i / kTileSide,
-                         samples.last_i / kTileSide});
-      const SampleBounds& t = touched.back();
-      if (touched.size() == 1) {
-        tiles_ = t;
-      } else {
-        tiles_ = {std::min(tiles_.first_j, t.first_j), std::max(tiles_.last_j, t.last_j),
-                  std::min(tiles_.first_i, t.first_i), std::max(tiles_.last_i, t.last_i)};
-      }
-    }
-    if (touched.empty()) return;
-
-    // Counting sort by tile; it keeps the order within each.
-    begin_.assign(binOf(tiles_.last_j, tiles_.last_i) + 2, 0);
-    const auto for_each_entry = [&](auto&& act) {
-      for (std::uint32_t index = 0; index < touched.size(); ++index) {
-        const SampleBounds& t = touched[index];
-        for (std::int32_t i = t.first_i; i <= t.last_i; ++i) {
-          for (std::int32_t j = t.first_j; j <= t.last_j; ++j) act(binOf(j, i), index);
-        }
-      }
-    };
-    for_each_entry([&](std::size_t bin, std::uint32_t) { ++begin_[bin + 1]; });
-    for (std::size_t bin = 1; bin < begin_.size(); ++bin) begin_[bin] += begin_[bin - 1];
-    entries_.resize(begin_.back());
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for_each_entry([&](std::size_t bin, std::uint32_t index) { entries_[next[bin]++] = index; });
-  }
-
-  template <typename Visit>
-  void forEachTriangle(std::int32_t tile_j, std::int32_t tile_i, Visit&& visit) const {
-    if (tile_j < tiles_.first_j || tile_j > tiles_.last_j || tile_i < tiles_.first_i ||
-        tile_i > tiles_.last_i)
-      return;
-    const std::size_t bin = binOf(tile_j, tile_i);
-    for (std::uint32_t entry = begin_[bin]; entry < begin_[bin + 1]; ++entry) visit(entries_[entry]);
-  }
-
- private:
-  std::size_t binOf(std::int32_t tile_j, std::int32_t tile_i) const {
-    return static_cast<std::size_t>(tile_i - tiles_.first_i) *
-               static_cast<std::size_t>(tiles_.last_j - tiles_.first_j + 1) +
-           static_cast<std::size_t>(tile_j - tiles_.first_j);
-  }
-
-  SampleBounds tiles_;                  // empty if no triangle touches the picture
-  std::vector<std::uint32_t> begin_;    // of each bin in entries_, and the end
-  std::vector<std::uint32_t> entries_;  // triangle indices
+// What a worker needs for a tile, kept from tile to tile.
+struct Scratch {
+  TileBuffer buffer;
+  TileCounts counts;
+  std::vector<TileBins::Segment> segments;
+  std::vector<const RasterTriangle*> triangles;
+  std::vector<std::uint32_t> slot;  // of a triangle among the faces that are seen
 };
 
 }  // namespace
 
-TilerStatistics tile(const std::vector<PretiledNode>& nodes, DepthFrameBuffer& buffer) {
-  const int width = buffer.width(), height = buffer.height();
-  std::vector<NodeBins> bins(nodes.size());
-  std::vector<std::vector<std::uint8_t>> covers(nodes.size());  // per face: 1 once it covered a sample
-  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
-    bins[n] = NodeBins(nodes[n], width, height);
-    covers[n].assign(nodes[n].faces.size(), 0);
-  });
+SettledTile::Seen SettledTile::at(int j, int i) const {
+  if (owner_.empty()) return {};
+  const std::uint32_t owner = owner_[tileIndex(j, i)];
+  if (owner == kNoTriangle) return {};
+  return {&faces_[owner].planes, faces_[owner].grid};
+}
 
-  const int tiles_across = (width + kTileSide - 1) / kTileSide,
-            tiles_down = (height + kTileSide - 1) / kTileSide;
-  std::vector<TilerStatistics> of_tile(static_cast<std::size_t>(tiles_across) *
-                                       static_cast<std::size_t>(tiles_down));
-  tbb::parallel_for(std::size_t{0}, of_tile.size(), [&](std::size_t t) {
-    const auto tile_j = static_cast<std::int32_t>(t) % tiles_across;
-    const auto tile_i = static_cast<std::int32_t>(t) / tiles_across;
-    const SampleBounds pixels{tile_j * kTileSide, std::min((tile_j + 1) * kTileSide, width) - 1,
-                              tile_i * kTileSide, std::min((tile_i + 1) * kTileSide, height) - 1};
-    TilerStatistics counts;
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const PretiledNode& node = nodes[n];
-      bins[n].forEachTriangle(tile_j, tile_i, [&](std::uint32_t index) {
-        const SnappedTriangle& triangle = node.triangles[index];
-        const FacePlanes& face = node.faces[triangle.face];
-        std::uint64_t tested = 0;
-        forEachSample(triangle, intersection(sampleBounds(triangle, width, height), pixels),
-                      [&](std::int32_t j, std::int32_t i) {
-                        ++tested;
-                        const auto inverse_u = static_cast<float>(face.inverseDepthAt(j, i));
-                        counts.written +=
-                            buffer.write(j, i, inverse_u, static_cast<std::uint32_t>(n), triangle.face) ? 1
-                                                                                                        : 0;
-                      });
-        counts.tested += tested;
-        // Several tiles may find the same face; all of them store the same value.
-        if (tested > 0)
-          std::atomic_ref<std::uint8_t>(covers[n][triangle.face]).store(1, std::memory_order_relaxed);
-      });
+class Tiler {
+ public:
+  Tiler(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view)
+      : bins_(bins), nodes_(nodes), view_(view), crossing_(bins.crossingCount(), 0) {}
+
+  TiledFrame run() {
+    TiledFrame frame;
+    frame.width = view_.width;
+    frame.height = view_.height;
+    frame.across = bins_.tilesAcross();
+    frame.tiles.resize(bins_.tileCount());
+    tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratches(
+        [] { return std::make_unique<Scratch>(); });
+    tbb::parallel_for(std::size_t{0}, frame.tiles.size(),
+                      [&](std::size_t t) { settle(t, *scratches.local(), frame.tiles[t]); });
+    for (const std::unique_ptr<Scratch>& scratch : scratches) {
+      frame.statistics.tested += scratch->counts.tested;
+      frame.statistics.written += scratch->counts.written;
+      frame.statistics.faces_drawn += scratch->counts.drawn;
+      frame.statistics.hidden += scratch->counts.hidden;
+      frame.statistics.no_sample += scratch->counts.no_sample;
     }
-    of_tile[t] = counts;
-  });
+    std::uint64_t covers = 0, hidden = 0;
+    for (const std::uint8_t bits : crossing_) {
+      covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
+      hidden += bits == kCrossingHidden ? 1 : 0;
+    }
+    frame.statistics.faces_drawn += covers + hidden;
+    frame.statistics.hidden += hidden;
+    frame.statistics.no_sample += bins_.crossingTriangles() - covers - hidden;
+    return frame;
+  }
 
-  TilerStatistics sum;
-  for (const TilerStatistics& counts : of_tile) {
-    sum.tested += counts.tested;
-    sum.written += counts.written;
+ private:
+  void settle(std::size_t t, Scratch& scratch, SettledTile& tile) {
+    bins_.segmentsOf(t, scratch.segments);
+    scratch.triangles.clear();
+    for (const TileBins::Segment& segment : scratch.segments) {
+      for (std::uint32_t n = 0; n < segment.count; ++n) scratch.triangles.push_back(segment.first + n);
+    }
+    if (scratch.triangles.empty()) return;
+    scratch.buffer.clear();
+    const auto across = static_cast<std::size_t>(bins_.tilesAcross());
+    rasterizeTile({static_cast<int>(t % across), static_cast<int>(t / across), view_.width, view_.height},
+                  scratch.triangles, crossing_, scratch.buffer, scratch.counts);
+
+    // Planes are made when a face is first met.
+    scratch.slot.assign(scratch.triangles.size(), kNoTriangle);
+    tile.owner_.assign(scratch.buffer.inverse_u.size(), kNoTriangle);
+    for (std::size_t pixel = 0; pixel < tile.owner_.size(); ++pixel) {
+      if (scratch.buffer.inverse_u[pixel] == 0) continue;
+      const std::uint32_t whole = scratch.buffer.whole[pixel / kBlockPixels];
+      const std::uint32_t owner = whole != kNoTriangle ? whole : scratch.buffer.triangle[pixel];
+      std::uint32_t& slot = scratch.slot[owner];
+      if (slot == kNoTriangle) {
+        slot = static_cast<std::uint32_t>(tile.faces_.size());
+        const RasterTriangle& triangle = *scratch.triangles[owner];
+        const PretiledNode& node = nodes_[triangle.node];
+        tile.faces_.push_back({facePlanes(view_, node, triangle.face), node.grid});
+      }
+      tile.owner_[pixel] = slot;
+    }
   }
-  for (const std::vector<std::uint8_t>& node : covers) {
-    const auto drawn = static_cast<std::uint64_t>(std::count(node.begin(), node.end(), 1));
-    sum.faces_drawn += drawn;
-    sum.no_sample += node.size() - drawn;
-  }
-  return sum;
+
+  const TileBins& bins_;
+  const std::vector<PretiledNode>& nodes_;
+  const ViewTransform& view_;
+  std::vector<std::uint8_t> crossing_;
+};
+
+TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view) {
+  return Tiler(bins, nodes, view).run();
 }
 
 }  // namespace deltaz

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <rapidcheck.h>
+#include <set>
 #include <vector>
 
 #include "librender/scene/view_volume.h"
+
+#include "binned_triangles.h"
 
 namespace deltaz {
 namespace {
@@ -28,6 +31,7 @@ Vector3 inView(const ViewTransform& view, double forward, double right, double d
 
 struct Drawn {
   PretiledNode node;
+  std::set<std::uint32_t> kept;  // faces in the bins
   std::vector<int> count = std::vector<int>(kWidth * kHeight, 0);
   std::vector<double> inverse_u = std::vector<double>(kWidth * kHeight, 0);
 };
@@ -49,14 +53,23 @@ Drawn drawAll(const ViewTransform& view, const std::vector<Vector3>& position,
     front.front.push_back(next);
   }
   Drawn drawn;
-  Pretiler(view).process(vertices, front, 1, drawn.node);
-  for (const SnappedTriangle& t : drawn.node.triangles) {
-    forEachSample(t, sampleBounds(t, kWidth, kHeight), [&](std::int32_t j, std::int32_t i) {
-      const auto pixel = static_cast<std::size_t>(i * kWidth + j);
-      ++drawn.count[pixel];
-      drawn.inverse_u[pixel] = drawn.node.faces[t.face].inverseDepthAt(j, i);
-    });
-  }
+  drawn.node = PretiledNode::ofTerrain(0, 1, vertices, front.front);
+  TileBins bins;
+  bins.reset(kWidth, kHeight, 1);
+  bins.writer(0).begin(0);
+  Pretiler(view).process(drawn.node, 0, bins.writer(0));
+  bins.finish();
+  forEachBinnedTriangle(
+      bins, kWidth, kHeight,
+      [&](const RasterTriangle& triangle, const SnappedTriangle& t, const SampleBounds& pixels) {
+        drawn.kept.insert(triangle.face);
+        const FacePlanes planes = facePlanes(view, drawn.node, triangle.face);
+        forEachSample(t, pixels, [&](std::int32_t j, std::int32_t i) {
+          const auto pixel = static_cast<std::size_t>(i * kWidth + j);
+          ++drawn.count[pixel];
+          drawn.inverse_u[pixel] = planes.inverseDepthAt(j, i);
+        });
+      });
   return drawn;
 }
 
@@ -156,7 +169,7 @@ TEST(Pretiler, counts_what_is_outside_and_what_falls_between_samples) {
   const Drawn drawn = drawAll(view, position, {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}});
   EXPECT_EQ(drawn.node.clipped, 2u);
   EXPECT_EQ(drawn.node.no_sample, 1u);
-  EXPECT_EQ(drawn.node.faces.size(), 1u);
+  EXPECT_EQ(drawn.kept, std::set<std::uint32_t>{3});
 }
 
 // Gradients come from the unsnapped vertices: the planes give back the vertices' own values.
@@ -168,8 +181,8 @@ TEST(Pretiler, planes_reproduce_the_vertices) {
                                     inView(view, at(20, 90), at(-30, 30), at(-20, 20)),
                                     inView(view, at(20, 90), at(-30, 30), at(-20, 20))};
     const Drawn drawn = drawAll(view, p, {{0, 1, 2}});
-    if (drawn.node.faces.empty()) return;
-    const FacePlanes& face = drawn.node.faces[0];
+    if (drawn.kept.empty()) return;
+    const FacePlanes face = facePlanes(view, drawn.node, 0);
     if (std::abs(face.inverse_u.per_j) + std::abs(face.inverse_u.per_i) > 1) return;
     for (const Vector3& vertex : p) {
       const ScreenVertex screen = project(view, vertex);

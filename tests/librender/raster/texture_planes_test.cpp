@@ -8,6 +8,8 @@
 
 #include "librender/scene/view_volume.h"
 
+#include "binned_triangles.h"
+
 namespace deltaz {
 namespace {
 
@@ -84,9 +86,12 @@ class TexturePlanesOfFaces : public ::testing::TestWithParam<std::uint32_t> {
     TerrainFaces faces;
     addFace(faces, vertices_.position, {{0, 1, 2}, 0});
     ASSERT_EQ(faces.front.size(), 1u);
-    node_ = {};
-    Pretiler(view_).process(vertices_, faces, 1, node_);
-    ASSERT_EQ(node_.faces.size(), 1u);
+    node_ = PretiledNode::ofTerrain(0, 1, vertices_, faces.front);
+    bins_.reset(view_.width, view_.height, 1);
+    bins_.writer(0).begin(0);
+    Pretiler(view_).process(node_, 0, bins_.writer(0));
+    bins_.finish();
+    face_ = facePlanes(view_, node_, 0);
   }
 
   std::mt19937 generator_{GetParam()};
@@ -94,11 +99,13 @@ class TexturePlanesOfFaces : public ::testing::TestWithParam<std::uint32_t> {
   std::vector<MappingColumn> columns_;
   TerrainVertices vertices_;
   PretiledNode node_;
+  TileBins bins_;
+  FacePlanes face_;
 };
 
 TEST_P(TexturePlanesOfFaces, are_those_of_the_reports_mapping_matrix) {
   make();
-  const FacePlanes& face = node_.faces[0];
+  const FacePlanes& face = face_;
   const TexturePlanes planes = texturePlanes(face);
   EXPECT_EQ(planes.origin.column, vertices_.texture[0].column);
   EXPECT_EQ(planes.origin.row, vertices_.texture[0].row);
@@ -108,31 +115,31 @@ TEST_P(TexturePlanesOfFaces, are_those_of_the_reports_mapping_matrix) {
 
 TEST_P(TexturePlanesOfFaces, lead_to_the_place_that_is_seen_and_to_its_derivatives) {
   make();
-  const FacePlanes& face = node_.faces[0];
+  const FacePlanes& face = face_;
   int seen = 0;
-  forEachSample(node_.triangles[0], sampleBounds(node_.triangles[0], view_.width, view_.height),
-                [&](std::int32_t j, std::int32_t i) {
-                  if ((j + i) % 97 != 0) return;
-                  ++seen;
-                  const double d = face.inverseDepthAt(j, i);
-                  const TextureFootprint footprint = footprintAt(face, j, i, d);
-                  const Vector3 p = view_.eye + view_.ray(j, i) * (1 / d);
-                  const auto expect = [&](const MappingColumn& t, double origin, double place, double per_j,
-                                          double per_i) {
-                    const Expected at(t, t.t4 - origin, face, view_);
-                    EXPECT_NEAR(place, t.at(p), 10 * kRelative * (std::abs(t.at(p)) + at.scale / d));
-                    const double scale = at.gradient_scale / d;
-                    EXPECT_NEAR(per_j, (at.per_j - (t.at(p) - origin) * face.inverse_u.per_j) / d,
-                                10 * kRelative * (scale + std::abs(per_j)));
-                    EXPECT_NEAR(per_i, (at.per_i - (t.at(p) - origin) * face.inverse_u.per_i) / d,
-                                10 * kRelative * (scale + std::abs(per_i)));
-                  };
-                  const GridCoordinates& origin = vertices_.texture[0];
-                  expect(columns_[0], origin.column, footprint.place.column, footprint.per_j.column,
-                         footprint.per_i.column);
-                  expect(columns_[1], origin.row, footprint.place.row, footprint.per_j.row,
-                         footprint.per_i.row);
-                });
+  const auto visit_sample = [&](std::int32_t j, std::int32_t i) {
+    if ((j + i) % 97 != 0) return;
+    ++seen;
+    const double d = face.inverseDepthAt(j, i);
+    const TextureFootprint footprint = footprintAt(face, j, i, d);
+    const Vector3 p = view_.eye + view_.ray(j, i) * (1 / d);
+    const auto expect = [&](const MappingColumn& t, double origin, double place, double per_j, double per_i) {
+      const Expected at(t, t.t4 - origin, face, view_);
+      EXPECT_NEAR(place, t.at(p), 10 * kRelative * (std::abs(t.at(p)) + at.scale / d));
+      const double scale = at.gradient_scale / d;
+      EXPECT_NEAR(per_j, (at.per_j - (t.at(p) - origin) * face.inverse_u.per_j) / d,
+                  10 * kRelative * (scale + std::abs(per_j)));
+      EXPECT_NEAR(per_i, (at.per_i - (t.at(p) - origin) * face.inverse_u.per_i) / d,
+                  10 * kRelative * (scale + std::abs(per_i)));
+    };
+    const GridCoordinates& origin = vertices_.texture[0];
+    expect(columns_[0], origin.column, footprint.place.column, footprint.per_j.column,
+           footprint.per_i.column);
+    expect(columns_[1], origin.row, footprint.place.row, footprint.per_j.row, footprint.per_i.row);
+  };
+  forEachBinnedTriangle(bins_, view_.width, view_.height,
+                        [&](const RasterTriangle&, const SnappedTriangle& triangle,
+                            const SampleBounds& pixels) { forEachSample(triangle, pixels, visit_sample); });
   EXPECT_GT(seen, 100);
 }
 

@@ -2,90 +2,143 @@
 
 #include <gtest/gtest.h>
 #include <random>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "binned_triangles.h"
 
 namespace deltaz {
 namespace {
 
 constexpr int kWidth = 300, kHeight = 200;  // no multiple of the tile side
 
+ViewTransform smallView() {
+  Camera camera;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.field_of_view = 60;
+  return makeViewTransform(camera, EllipsoidShape{});
+}
+
+// Faces across the picture and beyond it, each at one of five depths, so that there are many ties; every one
+// of them front-facing.
 std::vector<PretiledNode> randomNodes(std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::vector<PretiledNode> nodes(20);
-  for (PretiledNode& node : nodes) {
+  std::uniform_real_distribution<double> x(-200, 200), y(-150, 150);
+  std::vector<PretiledNode> nodes;
+  for (std::uint32_t n = 0; n < 20; ++n) {
+    TerrainVertices vertices;
+    std::vector<TerrainFace> faces;
     for (std::uint32_t t = 0; t < 50; ++t) {
-      SnappedTriangle triangle;
-      for (std::size_t k = 0; k < 3; ++k) {
-        triangle.x[k] = static_cast<std::int32_t>(random() % (400 * 256)) - 50 * 256;
-        triangle.y[k] = static_cast<std::int32_t>(random() % (300 * 256)) - 50 * 256;
-      }
-      if (doubledArea(triangle) < 0)
-        std::swap(triangle.x[1], triangle.x[2]), std::swap(triangle.y[1], triangle.y[2]);
-      if (doubledArea(triangle) <= 0 || sampleBounds(triangle, kWidth, kHeight).empty()) continue;
-      triangle.face = static_cast<std::uint32_t>(node.faces.size());
-      node.triangles.push_back(triangle);
-      FacePlanes face;
-      // Few distinct depths, so that there are many ties.
-      face.inverse_u.value = face.least = face.greatest = 1.0 + static_cast<double>(random() % 5);
-      node.faces.push_back(face);
+      const double u = 1.0 + static_cast<double>(random() % 5);
+      for (int k = 0; k < 3; ++k) vertices.position.push_back({u, x(random) * u, y(random) * u});
+      TerrainFace face{{3 * t, 3 * t + 1, 3 * t + 2}, t << 1};
+      const Vector3* const p = vertices.position.data() + 3 * t;
+      if (isBackFacing(p[0], p[1], p[2])) std::swap(face.vertex[1], face.vertex[2]);
+      faces.push_back(face);
     }
+    vertices.color.resize(vertices.position.size());
+    vertices.intensity.resize(vertices.position.size());
+    vertices.texture.resize(vertices.position.size());
+    nodes.push_back(PretiledNode::ofTerrain(0, n, vertices, faces));
   }
   return nodes;
 }
 
-// The plain definition: triangle after triangle over the whole picture.
-DepthFrameBuffer drawInOrder(const std::vector<PretiledNode>& nodes, TilerStatistics& counts) {
-  DepthFrameBuffer buffer(kWidth, kHeight);
-  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-    for (const SnappedTriangle& t : nodes[n].triangles) {
-      bool covers = false;
-      forEachSample(t, sampleBounds(t, kWidth, kHeight), [&](std::int32_t j, std::int32_t i) {
-        covers = true;
-        ++counts.tested;
-        const auto inverse_u = static_cast<float>(nodes[n].faces[t.face].inverseDepthAt(j, i));
-        if (buffer.write(j, i, inverse_u, n, t.face)) ++counts.written;
-      });
-      ++(covers ? counts.faces_drawn : counts.no_sample);
-    }
-  }
-  return buffer;
+// Work is shared out among `threads` writers in whatever order they come.
+TileBins& binned(TileBins& bins, std::vector<PretiledNode>& nodes, int threads) {
+  bins.reset(kWidth, kHeight, static_cast<std::size_t>(threads));
+  const Pretiler pretiler(smallView());
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
+    TileBins::Writer& writer =
+        bins.writer(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()));
+    writer.begin(static_cast<std::uint32_t>(n));
+    pretiler.process(nodes[n], static_cast<std::uint32_t>(n), writer);
+  });
+  bins.finish();
+  return bins;
 }
 
-TEST(Tiler, tiles_and_threads_change_nothing) {
-  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-    const std::vector<PretiledNode> nodes = randomNodes(seed);
-    TilerStatistics expected;
-    const DepthFrameBuffer reference = drawInOrder(nodes, expected);
-    for (const int threads : {1, 2, 7}) {
-      DepthFrameBuffer buffer(kWidth, kHeight);
-      TilerStatistics counts;
-      tbb::task_arena(threads).execute([&] { counts = tile(nodes, buffer); });
-      EXPECT_EQ(counts.tested, expected.tested);
-      EXPECT_EQ(counts.written, expected.written);
-      EXPECT_EQ(counts.faces_drawn, expected.faces_drawn);
-      EXPECT_EQ(counts.no_sample, expected.no_sample);
-      for (int i = 0; i < kHeight; ++i) {
-        for (int j = 0; j < kWidth; ++j) {
-          const auto &a = buffer.at(j, i), &b = reference.at(j, i);
-          ASSERT_EQ(a.inverse_u, b.inverse_u);
-          ASSERT_EQ(a.node, b.node);
-          ASSERT_EQ(a.face, b.face);
-        }
+// The plain definition: triangle after triangle, the nearer wins and of equals the first.
+struct Plain {
+  std::vector<std::uint64_t> identity = std::vector<std::uint64_t>(kWidth * kHeight, 0);
+  std::vector<double> inverse_u = std::vector<double>(kWidth * kHeight, 0);
+};
+
+Plain drawPlainly(const std::vector<PretiledNode>& nodes) {
+  Plain plain;
+  const ViewTransform view = smallView();
+  for (const PretiledNode& node : nodes) {
+    for (std::uint32_t f = 0; f < node.faces.size(); ++f) {
+      const FacePlanes planes = facePlanes(view, node, f);
+      RasterTriangle triangle{};
+      const auto& vertex = node.faces[f].vertex;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vector3& p = node.vertices.position[vertex[k == 0 ? 0 : 3 - k]];
+        triangle.vertex[k] = {static_cast<float>(p.y / p.x), static_cast<float>(p.z / p.x), 0, 0};
       }
+      const SnappedTriangle snapped = snappedOf(triangle, kWidth, kHeight);
+      if (doubledArea(snapped) <= 0) continue;
+      forEachSample(snapped, sampleBounds(snapped, kWidth, kHeight), [&](std::int32_t j, std::int32_t i) {
+        const auto pixel = static_cast<std::size_t>(i * kWidth + j);
+        if (!(planes.inverseDepthAt(j, i) > plain.inverse_u[pixel])) return;
+        plain.inverse_u[pixel] = planes.inverseDepthAt(j, i);
+        plain.identity[pixel] = planes.identity;
+      });
+    }
+  }
+  return plain;
+}
+
+TEST(tiler, tiles_and_threads_change_nothing) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    std::vector<PretiledNode> nodes = randomNodes(seed);
+    const Plain plain = drawPlainly(nodes);
+    for (const int threads : {1, 2, 7}) {
+      tbb::task_arena(threads).execute([&] {
+        TileBins bins;
+        std::vector<PretiledNode> own = nodes;
+        const TiledFrame frame = tile(binned(bins, own, threads), own, smallView());
+        for (int i = 0; i < kHeight; ++i) {
+          for (int j = 0; j < kWidth; ++j) {
+            const SettledTile& tile =
+                frame.tiles[static_cast<std::size_t>(i / kTileSide * frame.across + j / kTileSide)];
+            const SettledTile::Seen seen = tile.at(j % kTileSide, i % kTileSide);
+            const auto pixel = static_cast<std::size_t>(i * kWidth + j);
+            ASSERT_EQ(seen.face != nullptr, plain.inverse_u[pixel] > 0);
+            if (seen.face != nullptr) {
+              ASSERT_EQ(seen.face->identity, plain.identity[pixel]);
+            }
+          }
+        }
+      });
     }
   }
 }
 
-TEST(DepthFrameBuffer, nearer_wins_and_of_equals_the_first) {
-  DepthFrameBuffer buffer(2, 1);
-  EXPECT_TRUE(buffer.at(0, 0).empty());
-  EXPECT_TRUE(buffer.write(0, 0, 0.5f, 1, 10));
-  EXPECT_FALSE(buffer.write(0, 0, 0.5f, 2, 20));
-  EXPECT_FALSE(buffer.write(0, 0, 0.25f, 3, 30));
-  EXPECT_EQ(buffer.at(0, 0).face, 10u);
-  EXPECT_TRUE(buffer.write(0, 0, 0.75f, 4, 40));
-  EXPECT_EQ(buffer.at(0, 0).node, 4u);
-  EXPECT_TRUE(buffer.at(1, 0).empty());
+TEST(tiler, counts_are_the_same_for_any_number_of_threads_and_add_up) {
+  std::vector<PretiledNode> nodes = randomNodes(9);
+  std::uint64_t faces = 0;
+  for (const PretiledNode& node : nodes) faces += node.faces.size();
+  std::optional<TilerStatistics> first;
+  for (const int threads : {1, 2, 7}) {
+    tbb::task_arena(threads).execute([&] {
+      TileBins bins;
+      std::vector<PretiledNode> own = nodes;
+      const TilerStatistics counts = tile(binned(bins, own, threads), own, smallView()).statistics;
+      std::uint64_t left_out = 0;
+      for (const PretiledNode& node : own) left_out += node.clipped + node.no_sample;
+      EXPECT_EQ(left_out + counts.faces_drawn + counts.no_sample, faces);
+      EXPECT_LE(counts.hidden, counts.faces_drawn);
+      if (first) {
+        EXPECT_EQ(counts.tested, first->tested);
+        EXPECT_EQ(counts.written, first->written);
+        EXPECT_EQ(counts.hidden, first->hidden);
+        EXPECT_EQ(counts.faces_drawn, first->faces_drawn);
+      }
+      first = counts;
+    });
+  }
 }
 
 }  // namespace
