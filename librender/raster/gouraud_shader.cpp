@@ -37,6 +37,7 @@ using Floats = hn::Vec<FloatTag>;
 using Ints = hn::Vec<IntTag>;
 constexpr FloatTag kFloat;
 constexpr IntTag kInt;
+constexpr hn::RebindToUnsigned<FloatTag> kUnsigned;
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 constexpr std::size_t kVectors = kBlockPixels / kLanes;
 
@@ -55,7 +56,7 @@ HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count,
   for (std::size_t t = 0; t < kShadeBatch; t += kLanes) {
     for (std::size_t k = 0; k < 3; ++k) {
       Floats vx, vy, vw, payload;
-      hn::LoadInterleaved4(kFloat, reinterpret_cast<const float*>(vertex[k] + t), vx, vy, vw, payload);
+      hn::LoadInterleaved4(kFloat, &vertex[k][t].x, vx, vy, vw, payload);
       hn::Store(vx, kFloat, x[k] + t);
       hn::Store(vy, kFloat, y[k] + t);
       hn::Store(vw, kFloat, w[k] + t);
@@ -165,12 +166,12 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   const int columns = std::min(kTileSide, tile.width - tile.j * kTileSide);
   const int rows = std::min(kTileSide, tile.height - tile.i * kTileSide);
   // A row of blocks, coloured block by block, leaves as four rows of pixels.
-  alignas(64) std::int32_t color[kBlocksAcross * kBlockPixels];
+  alignas(64) std::uint32_t color[kBlocksAcross * kBlockPixels];
   for (int block_i = 0; block_i * kBlockSide < rows; ++block_i) {
     const Floats block_y = hn::Set(kFloat, origin_y + static_cast<float>(block_i * kBlockSide));
     const auto first_of_row = static_cast<std::size_t>(block_i) * kBlocksAcross * kBlockPixels;
     const float* const depth = buffer.inverse_u.data() + first_of_row;
-    const auto* const owner = reinterpret_cast<const std::int32_t*>(buffer.triangle.data()) + first_of_row;
+    const std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
     for (std::size_t block = 0; block < kBlocksAcross; ++block) {
       const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block * kBlockSide));
       const std::uint32_t whole = buffer.whole[static_cast<std::size_t>(block_i) * kBlocksAcross + block];
@@ -182,24 +183,25 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
         const Floats y = hn::Add(block_y, hn::Load(kFloat, kShadeLaneI + v));
         const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
         if (of_whole != nullptr) {
-          hn::Store(shade(*of_whole, x, y, u), kInt, color + n);
+          hn::Store(hn::BitCast(kUnsigned, shade(*of_whole, x, y, u)), kUnsigned, color + n);
           continue;
         }
         Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
-        const Ints owners = hn::Load(kInt, owner + n);
+        const Ints owners = hn::BitCast(kInt, hn::Load(kUnsigned, owner + n));
         auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
         while (!hn::AllFalse(kInt, left)) {
           // The first and the last: most blocks show two.
           const std::uint32_t lanes = bits(left);
-          const std::int32_t first = owner[n + static_cast<std::size_t>(std::countr_zero(lanes))];
-          const std::int32_t last = owner[n + static_cast<std::size_t>(std::bit_width(lanes)) - 1];
-          const auto of_first = hn::And(left, hn::Eq(owners, hn::Set(kInt, first)));
-          const auto of_last = hn::And(left, hn::Eq(owners, hn::Set(kInt, last)));
+          const std::uint32_t first = owner[n + static_cast<std::size_t>(std::countr_zero(lanes))];
+          const std::uint32_t last = owner[n + static_cast<std::size_t>(std::bit_width(lanes)) - 1];
+          const auto of_first =
+              hn::And(left, hn::Eq(owners, hn::Set(kInt, static_cast<std::int32_t>(first))));
+          const auto of_last = hn::And(left, hn::Eq(owners, hn::Set(kInt, static_cast<std::int32_t>(last))));
           result = hn::IfThenElse(of_first, shade(planes[first], x, y, u), result);
           result = hn::IfThenElse(of_last, shade(planes[last], x, y, u), result);
           left = hn::AndNot(hn::Or(of_first, of_last), left);
         }
-        hn::Store(result, kInt, color + n);
+        hn::Store(hn::BitCast(kUnsigned, result), kUnsigned, color + n);
       }
     }
     const int height = std::min(kBlockSide, rows - block_i * kBlockSide);
@@ -207,7 +209,7 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
       const std::size_t pixel = static_cast<std::size_t>(tile.i * kTileSide + block_i * kBlockSide + i) *
                                     static_cast<std::size_t>(frame.width) +
                                 static_cast<std::size_t>(tile.j * kTileSide);
-      copyRow(reinterpret_cast<const std::uint32_t*>(color) + i * kBlockSide, columns, &frame.rgba[pixel]);
+      copyRow(color + i * kBlockSide, columns, &frame.rgba[pixel]);
       copyRow(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
     }
   }

@@ -93,16 +93,18 @@ class FaceCuller {
   }
 
   void cullByCorners(const CornerFaces& faces, CulledFaces& out, CullCounts& counts) const {
-    const auto* const words = reinterpret_cast<const std::int32_t*>(faces.words);
+    const std::uint32_t* const words = faces.words;
+    const hn::RebindToUnsigned<Tag> du;
     const std::size_t lanes = hn::Lanes(d_);
     for (std::size_t n = 0; n < faces.count; n += lanes) {
       const std::size_t left = faces.count - n;
       // Nothing is read behind the last face.
-      std::int32_t rest[4 * 16] = {};
+      std::uint32_t rest[4 * 16] = {};
       if (left < lanes) std::copy_n(words + 4 * n, 4 * left, rest);
-      Vec a, b, c, unused;
-      hn::LoadInterleaved4(d_, left < lanes ? rest : words + 4 * n, a, b, c, unused);
-      cullCorners(a, c, b, faces.snapped_x, faces.snapped_y, hn::FirstN(d_, left), n, out, counts);
+      hn::Vec<hn::RebindToUnsigned<Tag>> a, b, c, unused;
+      hn::LoadInterleaved4(du, left < lanes ? rest : words + 4 * n, a, b, c, unused);
+      cullCorners(hn::BitCast(d_, a), hn::BitCast(d_, c), hn::BitCast(d_, b), faces.snapped_x,
+                  faces.snapped_y, hn::FirstN(d_, left), n, out, counts);
     }
   }
 

@@ -67,6 +67,7 @@ using Ints = hn::Vec<IntTag>;
 
 constexpr FloatTag kFloat;
 constexpr IntTag kInt;
+constexpr hn::RebindToUnsigned<FloatTag> kUnsigned;
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 constexpr std::size_t kVectors = kBlockPixels / kLanes;  // of a block
 
@@ -152,7 +153,7 @@ class TileRasterizer {
       Floats vw[3];
       for (std::size_t k = 0; k < 3; ++k) {
         Floats vx, vy, payload;
-        hn::LoadInterleaved4(kFloat, reinterpret_cast<const float*>(vertex[k] + t), vx, vy, vw[k], payload);
+        hn::LoadInterleaved4(kFloat, &vertex[k][t].x, vx, vy, vw[k], payload);
         hn::Store(vx, kFloat, x[k] + t);
         hn::Store(vy, kFloat, y[k] + t);
         hn::Store(vw[k], kFloat, w[k] + t);
@@ -179,8 +180,8 @@ class TileRasterizer {
       const auto none = hn::Or(hn::Gt(first_j, last_j), hn::Gt(first_i, last_i));
       const Ints packed = hn::Or(hn::Or(first_j, hn::ShiftLeft<8>(first_i)),
                                  hn::Or(hn::ShiftLeft<16>(last_j), hn::ShiftLeft<24>(last_i)));
-      hn::Store(hn::IfThenElse(none, hn::Set(kInt, 1), packed), kInt,
-                reinterpret_cast<std::int32_t*>(batch.blocks) + t);
+      hn::Store(hn::BitCast(kUnsigned, hn::IfThenElse(none, hn::Set(kInt, 1), packed)), kUnsigned,
+                batch.blocks + t);
       hn::Store(hn::ShiftLeft<2>(first_j), kInt, first_column + t);
       hn::Store(hn::ShiftLeft<2>(first_i), kInt, first_row + t);
       const Floats centre_x =
@@ -416,18 +417,19 @@ class TileRasterizer {
       hn::Store(now[v], kFloat, depth + v * kLanes);
       least = hn::Min(least, now[v]);
     }
-    auto* const owner = reinterpret_cast<std::int32_t*>(buffer_.triangle.data()) + block * kBlockPixels;
+    std::uint32_t* const owner = buffer_.triangle.data() + block * kBlockPixels;
     std::uint32_t& whole = buffer_.whole[block];
     if (kFull && hn::AllTrue(kInt, all_pass)) {
       whole = static_cast<std::uint32_t>(hn::GetLane(lanes.number));
     } else {
       if (whole != kNoTriangle) {
         for (std::size_t v = 0; v < kVectors; ++v)
-          hn::Store(hn::Set(kInt, static_cast<std::int32_t>(whole)), kInt, owner + v * kLanes);
+          hn::Store(hn::Set(kUnsigned, whole), kUnsigned, owner + v * kLanes);
         whole = kNoTriangle;
       }
       for (std::size_t v = 0; v < kVectors; ++v)
-        hn::BlendedStore(lanes.number, pass[v], kInt, owner + v * kLanes);
+        hn::BlendedStore(hn::BitCast(kUnsigned, lanes.number), hn::RebindMask(kUnsigned, pass[v]), kUnsigned,
+                         owner + v * kLanes);
     }
     buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, least));
     return true;

@@ -62,7 +62,7 @@ void projectMesh(const MeshProjection& projection, const float* x, const float* 
   for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
     const auto at = projected(d, projection, x + n, y + n, z + n);
     hn::StoreInterleaved4(at.x, at.y, at.inverse_u, hn::BitCast(d, hn::LoadU(du, payload + n)), d,
-                          reinterpret_cast<float*>(out.vertex + n));
+                          &out.vertex[n].x);
     storeSnapped(d, at.x, at.y, at.before, projection.width, projection.height, out, n);
   }
 }
@@ -99,8 +99,7 @@ void projectDoubles(const double* positions, std::size_t count, int width, int h
     };
     const auto x = on_screen(v), y = on_screen(w);
     hn::StoreInterleaved4(x, y, hn::DemoteTo(df, inverse_u),
-                          hn::BitCast(df, hn::Iota(di, static_cast<std::int32_t>(n))), df,
-                          reinterpret_cast<float*>(out.vertex + n));
+                          hn::BitCast(df, hn::Iota(di, static_cast<std::int32_t>(n))), df, &out.vertex[n].x);
     const auto before_as_float = hn::DemoteTo(df, hn::IfThenElse(before, hn::Set(d, 1.0), hn::Zero(d)));
     storeSnapped(df, x, y, hn::Gt(before_as_float, hn::Zero(df)), width, height, out, n);
   }
@@ -147,7 +146,7 @@ void projectViewPositions(std::span<const Vector3> positions, int width, int hei
                           const ProjectedVertices& out) {
   static_assert(sizeof(Vector3) == 3 * sizeof(double));
   HWY_DYNAMIC_DISPATCH(projectDoubles)
-  (reinterpret_cast<const double*>(positions.data()), positions.size(), width, height, out);
+  (positions.empty() ? nullptr : &positions.data()->x, positions.size(), width, height, out);
 }
 
 }  // namespace deltaz
