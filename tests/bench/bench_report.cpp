@@ -203,8 +203,10 @@ class SnappedTile {
       : vertices_(positions.count() + kRowPadding),
         x_(positions.count() + 2 * kRowPadding),
         y_(positions.count() + 2 * kRowPadding) {
-    projectViewPositions(positions.u.data(), positions.v.data(), positions.w.data(), positions.count(), kSide,
-                         kSide, {vertices_.data(), x_.data(), y_.data()});
+    std::vector<Vector3> places;
+    places.reserve(positions.count());
+    for (std::size_t post = 0; post < positions.count(); ++post) places.push_back(positions.at(post));
+    projectViewPositions(places, kSide, kSide, {vertices_.data(), x_.data(), y_.data()});
   }
 
   // Faces that are kept.
