@@ -95,6 +95,7 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["--lod", "reference"], ["dbview", area, *png, "--lod", "report", "--engine", "reference"]),
             (["--transform"], ["dbview", area, *png, "--transform", "float"]),
             (["--transform", "reference"], ["dbview", area, *png, "--transform", "delta", "--engine", "reference"]),
+            (["--simd"], ["dbview", area, *png, "--simd", "mmx"]),
             (["--engine"], ["dbview", area, *png, "--engine", "ars"]),
             (["--repeat"], ["dbview", area, *png, "--repeat", "0"]),
             (["--color"], ["dbview", area, *png, "--color", "summer"]),

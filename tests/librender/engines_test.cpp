@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "libdb/access/simd_target.h"
 #include "tests/librender/picture_comparison.h"
 #include "tests/librender/test_databases.h"
 
@@ -30,6 +31,42 @@ void expectSamePicture(const Database& database, const RenderOptions& options) {
 TEST(Engines, draw_the_same_picture_of_the_whole_area) {
   const MemoryDatabase area = makeDatabase(smallArea());
   expectSamePicture(area.database, optionsOf(wholeAreaCamera(area.database.area(), 320, 200, 60)));
+}
+
+TEST(Engines, pictures_and_counts_do_not_depend_on_vector_width_or_threads) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  for (const Camera& camera : {wholeAreaCamera(area.database.area(), 321, 203, 60),
+                               cameraOver(area.database, 0.41, 0.37, 1.7, 45, -3, 320, 200)}) {
+    RenderOptions options = optionsOf(camera);
+    options.tolerance = 1;
+    options.threads = 1;
+    FrameStatistics expected;
+    const Result<Picture> first = makeEngine(EngineKind::kFast)->render(area.database, options, expected);
+    ASSERT_TRUE(first.ok());
+    const auto expect_same = [&] {
+      FrameStatistics counts;
+      const Result<Picture> picture = makeEngine(EngineKind::kFast)->render(area.database, options, counts);
+      ASSERT_TRUE(picture.ok());
+      EXPECT_EQ(picture.value().rgb, first.value().rgb);
+      EXPECT_EQ(picture.value().depth, first.value().depth);
+      EXPECT_EQ(picture.value().triangle, first.value().triangle);
+      EXPECT_EQ(counts.samples.tested, expected.samples.tested);
+      EXPECT_EQ(counts.samples.written, expected.samples.written);
+      EXPECT_EQ(counts.samples.shaded, expected.samples.shaded);
+      EXPECT_EQ(counts.triangles.drawn, expected.triangles.drawn);
+      EXPECT_EQ(counts.triangles.no_sample, expected.triangles.no_sample);
+    };
+    for (const SimdTarget target : simdTargets()) {
+      SCOPED_TRACE(simdTargetName(target));
+      ASSERT_TRUE(limitSimdTarget(target));
+      expect_same();
+    }
+    limitSimdTarget(std::nullopt);
+    for (const int threads : {2, 7}) {
+      options.threads = threads;
+      expect_same();
+    }
+  }
 }
 
 TEST(Engines, draw_the_same_picture_at_eye_level) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/file_system.h"
+#include "libdb/access/simd_target.h"
 #include "tools/common/output_file.h"
 #include "tools/common/parse.h"
 
@@ -67,6 +68,12 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
                  "fast, or reference: double precision, every triangle (default: fast)")
       ->check(CLI::IsMember({"fast", "reference"}))
       ->type_name("ENGINE");
+  app.add_option(
+         "--simd", options.simd,
+         "Widest vector instructions to use: auto, portable, sse4, avx2 or avx512. The picture is the same "
+         "on all of them (default: auto)")
+      ->check(CLI::IsMember({"auto", "portable", "sse4", "avx2", "avx512"}))
+      ->type_name("SET");
   addPathOption(app, "--stats", options.statistics_path, "Write statistics of the frame as JSON")
       ->type_name("FILE.json");
   addPathOption(app, "--depth", options.depth_path,
@@ -101,6 +108,10 @@ Result<View> parseView(const ViewOptions& options) {
   if (view.engine == EngineKind::kReference && *transform != TransformKind::kExact) {
     return usageError("--transform", "the reference engine is always exact", {},
                       fmt::format("Leave out --transform {}, or --engine reference", options.transform));
+  }
+  if (options.simd != "auto" && !limitSimdTarget(simdTargetNamed(options.simd))) {
+    return usageError("--simd", fmt::format("this processor has no {}", options.simd), {},
+                      "Leave out --simd");
   }
   DELTAZ_TRY(checkOutputs(options));
   DELTAZ_TRY_ASSIGN(RenderOptions render, parseScene(options.scene, options.common));

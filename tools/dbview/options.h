@@ -17,6 +17,7 @@ struct ViewOptions {
   std::string lod = "error";
   std::string transform = "exact";
   std::string engine = "fast";
+  std::string simd = "auto";
   std::string statistics_path, depth_path;
   std::string repeat = "1";
 };
@@ -31,8 +32,9 @@ struct View {
   int repeat = 1;
 };
 
-// Everything of the options that can be judged without a database; the file of poses is read. Errors: kUsage,
-// kCannotAccess (an output cannot be written), kInvalid (the file of poses).
+// Everything of the options that can be judged without a database; the file of poses is read, and --simd is
+// set for the process. Errors: kUsage, kCannotAccess (an output cannot be written), kInvalid (the file of
+// poses).
 Result<View> parseView(const ViewOptions& options);
 
 const char* engineName(EngineKind kind);
