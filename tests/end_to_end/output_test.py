@@ -120,7 +120,9 @@ def statistics_have_every_member(folder):
         require(data["engine"] == engine and data["camera"]["width"] == 160 and data["repeat"] == 2, data)
         (frame,) = data["frames"]
         require(set(frame["models"]) == {"visited", "out_of_view", "drawn"}, frame)
-        require(set(frame["nodes"]) == {"visited", "out_of_view", "beyond_horizon", "facing_away", "occluded", "drawn"}, frame)
+        nodes = frame["nodes"]
+        require(set(nodes) == {"visited", "out_of_view", "beyond_horizon", "facing_away", "occluded", "drawn", "opened", "empty"}, frame)
+        require(nodes["visited"] == sum(count for fate, count in nodes.items() if fate != "visited") > 0, nodes)
         triangles = frame["triangles"]
         require(set(triangles) == {"in", "back_facing", "clipped", "no_sample", "drawn"}, frame)
         require(triangles["in"] == sum(count for fate, count in triangles.items() if fate != "in") > 0, triangles)
