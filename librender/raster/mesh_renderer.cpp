@@ -200,7 +200,7 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
       triangle.vertex[0] = southern(cell);
       triangle.vertex[1] = northern(top ? cell : cell + 1);
       triangle.vertex[2] = top ? northern(cell + 1) : southern(cell + 1);
-      triangle.node = triangle.clipped = 0;
+      triangle.node = 0;
       triangle.face = faces.face[n];
       if (!isOneTile(range)) writer.add(triangle, unpacked(range));
     }
@@ -240,7 +240,7 @@ void MeshRenderer::Worker::drawMeshlets(const ViewTransform& view, const MeshPro
       triangle.vertex[0] = room.vertex[a[t]];
       triangle.vertex[1] = room.vertex[b[t]];
       triangle.vertex[2] = room.vertex[c[t]];
-      triangle.node = triangle.clipped = 0;
+      triangle.node = 0;
       triangle.face = meshlet.first_triangle + t;
       if (!isOneTile(range)) writer.add(triangle, unpacked(range));
     }
@@ -263,7 +263,7 @@ void MeshRenderer::Worker::drawCarefully(const ViewTransform& view, const MeshVe
   }
   const ClippedFace clipped = clipFace(positions);
   RasterTriangle triangle;
-  triangle.node = triangle.face = triangle.clipped = 0;
+  triangle.node = triangle.face = 0;
   // A face of several pieces is counted once: by the worst that befell all of them, or as drawn.
   TriangleFate fate = TriangleFate::kOutside;
   std::uint32_t number = 0;

@@ -156,7 +156,6 @@ void Pretiler::process(PretiledNode& node, std::uint32_t number, TileBins::Write
       triangle.vertex[2] = vertex[corner[1]];
       triangle.node = number;
       triangle.face = face;
-      triangle.clipped = 0;
       bins.add(triangle,
                {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
                 static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)});
@@ -182,7 +181,6 @@ void Pretiler::processClipped(PretiledNode& node, std::uint32_t number, std::uin
   RasterTriangle triangle;
   triangle.node = number;
   triangle.face = face;
-  triangle.clipped = 0;
   // All pieces share one number, so that the face is counted once.
   std::uint32_t shared = 0;
   for (std::size_t k = 1; k + 1 < clipped.corners; ++k) {

@@ -96,7 +96,7 @@ class Pretiler {
   void process(PretiledNode& node, std::uint32_t number, TileBins::Writer& bins) const;
 
  private:
-  // False, and counted, if nothing is left of the face.
+  // The careful way for one face; counted if nothing is left of it.
   void processClipped(PretiledNode& node, std::uint32_t number, std::uint32_t face,
                       TileBins::Writer& bins) const;
 

@@ -35,7 +35,6 @@ inline std::int32_t snappedCoordinate(float from_centre, int extent_pixels) {
 struct alignas(64) RasterTriangle {
   RasterVertex vertex[3];
   std::uint32_t node, face;  // the caller's name for it
-  std::uint32_t clipped;     // 0, or 1 + where the caller keeps what it knows of clipped faces
   std::uint32_t crossing;    // 0, or 1 + its number among those that touch several tiles
 };
 static_assert(sizeof(RasterTriangle) == 64);
