@@ -8,19 +8,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "librender/raster/block_lanes.h"
+
 #ifndef DELTAZ_GOURAUD_SHADER_ONCE
 #define DELTAZ_GOURAUD_SHADER_ONCE
 namespace deltaz {
 
-alignas(64) inline constexpr float kShadeLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3,
-                                                                0, 1, 2, 3, 0, 1, 2, 3};
-alignas(64) inline constexpr float kShadeLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1,
-                                                                2, 2, 2, 2, 3, 3, 3, 3};
-
 // Triangles that are set up together.
 inline constexpr std::size_t kShadeBatch = 16;
-// Gradients of slivers that are lines but for rounding; products with distances stay finite.
-inline constexpr double kSteepestWeight = 1e15;
 
 }  // namespace deltaz
 #endif
@@ -79,7 +74,7 @@ HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count,
         hn::IfThenElse(hn::Eq(determinant, zero), zero, hn::Div(hn::Set(d, 1.0), determinant));
     const auto b_scaled = hn::Mul(at(w[1]), inverse), c_scaled = hn::Mul(at(w[2]), inverse);
     const auto store = [&](auto value, float* to) {
-      const auto limited = hn::Min(hn::Max(value, hn::Set(d, -kSteepestWeight)), hn::Set(d, kSteepestWeight));
+      const auto limited = hn::Min(hn::Max(value, hn::Set(d, -kSteepest)), hn::Set(d, kSteepest));
       hn::Store(hn::DemoteTo(half_float, limited), half_float, to + t);
     };
     store(hn::Mul(cy, b_scaled), gradient[0]);
@@ -179,8 +174,8 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
       for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
         const std::size_t n = block * kBlockPixels + v;
         const Floats inverse_u = hn::Load(kFloat, depth + n);
-        const Floats x = hn::Add(block_x, hn::Load(kFloat, kShadeLaneJ + v));
-        const Floats y = hn::Add(block_y, hn::Load(kFloat, kShadeLaneI + v));
+        const Floats x = hn::Add(block_x, hn::Load(kFloat, kLaneX + v));
+        const Floats y = hn::Add(block_y, hn::Load(kFloat, kLaneY + v));
         const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
         if (of_whole != nullptr) {
           hn::Store(hn::BitCast(kUnsigned, shade(*of_whole, x, y, u)), kUnsigned, color + n);

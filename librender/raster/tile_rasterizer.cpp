@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 #include <numeric>
 
+#include "librender/raster/block_lanes.h"
 #include "librender/raster/rounding-inl.h"
 
 #ifndef DELTAZ_TILE_RASTERIZER_ONCE
@@ -33,20 +34,11 @@ struct alignas(64) SetUpBatch {
   float least[kBatch], greatest[kBatch];
 };
 
-alignas(64) inline constexpr std::int32_t kLaneJ[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3,
-                                                                  0, 1, 2, 3, 0, 1, 2, 3};
-alignas(64) inline constexpr std::int32_t kLaneI[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1,
-                                                                  2, 2, 2, 2, 3, 3, 3, 3};
-alignas(64) inline constexpr float kLaneX[kBlockPixels] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-alignas(64) inline constexpr float kLaneY[kBlockPixels] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-
 // Edge functions of triangles in the guard band change by less than this from one pixel of a tile to any
 // other, or to the block behind the last: where they start beyond it only their sign counts, and sums stay in
 // 32 bits.
 inline constexpr double kSaturation = 1 << 30;
 static_assert(2 * 2.0 * kGuardBand * kSubPixels * (kTileSide + 2 * kBlockSide) < kSaturation);
-// Gradients of slivers that are lines but for rounding; products with distances stay finite.
-inline constexpr double kSteepest = 1e15;
 
 }  // namespace deltaz
 #endif
