@@ -30,8 +30,13 @@ HWY_INLINE Range joined(Range range, Vec value) {
 
 class FaceCuller {
  public:
-  FaceCuller(int width, int height)
-      : last_x_(hn::Set(d_, (width - 1) * kSubPixels)),
+  FaceCuller(int width, int height, std::int32_t reach = 0)
+      : reach_(hn::Set(d_, reach)),
+        to_first_(hn::Set(d_, kSubPixels - 1 - reach)),
+        first_(hn::Set(d_, -reach)),
+        beyond_x_(hn::Set(d_, (width - 1) * kSubPixels + reach)),
+        beyond_y_(hn::Set(d_, (height - 1) * kSubPixels + reach)),
+        last_x_(hn::Set(d_, (width - 1) * kSubPixels)),
         last_y_(hn::Set(d_, (height - 1) * kSubPixels)),
         guard_low_x_(hn::Set(d_, (width - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
         guard_low_y_(hn::Set(d_, (height - 1) * (kSubPixels / 2) - kGuardCoordinate + 1)),
@@ -125,9 +130,9 @@ class FaceCuller {
 
   // Of ranges without a vertex before the hither plane, or with nothing but such.
   HWY_INLINE Mask isBeside(Range x, Range y) const {
-    const Vec zero = hn::Zero(d_), hither = hn::Set(d_, kBeforeHitherCoordinate);
-    const Mask beside = hn::Or(hn::Or(hn::Lt(x.greatest, zero), hn::Gt(x.least, last_x_)),
-                               hn::Or(hn::Lt(y.greatest, zero), hn::Gt(y.least, last_y_)));
+    const Vec hither = hn::Set(d_, kBeforeHitherCoordinate);
+    const Mask beside = hn::Or(hn::Or(hn::Lt(x.greatest, first_), hn::Gt(x.least, beyond_x_)),
+                               hn::Or(hn::Lt(y.greatest, first_), hn::Gt(y.least, beyond_y_)));
     return hn::Or(hn::And(beside, hn::Lt(x.greatest, hither)), hn::Eq(x.least, hither));
   }
 
@@ -145,12 +150,10 @@ class FaceCuller {
     Mask left = hn::AndNot(hn::Or(beside, exceptional), in);
     const Mask back = hn::And(left, hn::Lt(area, hn::Zero(d_)));
     left = hn::AndNot(back, left);
-    const Vec first_j =
-        hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(x.least, hn::Set(d_, kSubPixels - 1))));
-    const Vec first_i =
-        hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(y.least, hn::Set(d_, kSubPixels - 1))));
-    const Vec last_j = hn::ShiftRight<kSubPixelBits>(hn::Min(x.greatest, last_x_));
-    const Vec last_i = hn::ShiftRight<kSubPixelBits>(hn::Min(y.greatest, last_y_));
+    const Vec first_j = hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(x.least, to_first_)));
+    const Vec first_i = hn::Max(hn::Zero(d_), hn::ShiftRight<kSubPixelBits>(hn::Add(y.least, to_first_)));
+    const Vec last_j = hn::ShiftRight<kSubPixelBits>(hn::Min(hn::Add(x.greatest, reach_), last_x_));
+    const Vec last_i = hn::ShiftRight<kSubPixelBits>(hn::Min(hn::Add(y.greatest, reach_), last_y_));
     const Mask empty = hn::And(
         left, hn::Or(hn::Eq(area, hn::Zero(d_)), hn::Or(hn::Gt(first_j, last_j), hn::Gt(first_i, last_i))));
     left = hn::AndNot(empty, left);
@@ -175,6 +178,7 @@ class FaceCuller {
   }
 
   const Tag d_;
+  const Vec reach_, to_first_, first_, beyond_x_, beyond_y_;
   const Vec last_x_, last_y_, guard_low_x_, guard_low_y_, guard_high_x_, guard_high_y_;
 };
 
@@ -183,8 +187,9 @@ void cullRow(const GridRow& row, int width, int height, CulledFaces& out, Culled
   FaceCuller(width, height).cullRow(row, out, top, counts);
 }
 
-void cullByCorners(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
-  FaceCuller(width, height).cullByCorners(faces, out, counts);
+void cullByCorners(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts,
+                   std::int32_t reach) {
+  FaceCuller(width, height, reach).cullByCorners(faces, out, counts);
 }
 
 void cullIndexed(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
@@ -225,9 +230,10 @@ void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFa
   HWY_DYNAMIC_DISPATCH(cullIndexed)(faces, width, height, out, counts);
 }
 
-void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
+void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts,
+                     std::int32_t reach) {
   out.count = 0;
-  HWY_DYNAMIC_DISPATCH(cullByCorners)(faces, width, height, out, counts);
+  HWY_DYNAMIC_DISPATCH(cullByCorners)(faces, width, height, out, counts, reach);
 }
 
 }  // namespace deltaz

@@ -5,7 +5,9 @@
 // it is turned away (its snapped vertices run counter-clockwise), or because no pixel centre lies in its
 // bounding box or it has no area. Faces the integer tests cannot decide (a vertex before the hither plane or
 // outside the guard band, or larger than 127 pixels) are reported as exceptional, for the careful way. Exact,
-// and the same on every vector width. Thread-safety: pure function.
+// and the same on every vector width. Where samples are moved from the pixels' centres (sample_pattern.h), by
+// no more than `reach`, bounding boxes are tested as much wider: of the faces without a sample some are kept.
+// Thread-safety: pure function.
 #pragma once
 
 #include <cstddef>
@@ -65,7 +67,8 @@ void cullIndexedFaces(const IndexedFaces& faces, int width, int height, CulledFa
 
 // The same tests; CulledFaces::face is the face's number, in ascending order. Room for count + kRowPadding
 // entries.
-void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts);
+void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts,
+                     std::int32_t reach = 0);
 
 // Room for 2 * (cells + kRowPadding) entries in both lists. Adds to `counts`.
 void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts);

@@ -140,7 +140,7 @@ void Pretiler::process(PretiledNode& node, std::uint32_t number, TileBins::Write
     const std::size_t count = std::min(kFacesAtOnce, node.faces.size() - first);
     CulledFaces faces{kept.data(), tiles.data(), 0};
     cullCornerFaces({node.faces[first].vertex.data(), count, snapped_x.data(), snapped_y.data()}, view_.width,
-                    view_.height, faces, counts);
+                    view_.height, faces, counts, reach_);
     for (std::size_t n = 0; n < faces.count; ++n) {
       const auto face = static_cast<std::uint32_t>(first + faces.face[n]);
       const std::uint32_t range = faces.tiles[n];
@@ -191,7 +191,7 @@ void Pretiler::processClipped(PretiledNode& node, std::uint32_t number, std::uin
       x[n] = snappedCoordinate(triangle.vertex[n].x, view_.width);
       y[n] = snappedCoordinate(triangle.vertex[n].y, view_.height);
     }
-    const TrianglePlacement placed = placeTriangle(x, y, view_.width, view_.height);
+    const TrianglePlacement placed = placeTriangle(x, y, view_.width, view_.height, reach_);
     if (placed.fate != TriangleFate::kKept) continue;
     if (shared == 0) shared = bins.numberForPieces();
     bins.addPiece(triangle, placed.tiles, shared);

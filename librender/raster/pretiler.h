@@ -89,7 +89,8 @@ FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::
 
 class Pretiler {
  public:
-  explicit Pretiler(const ViewTransform& view) : view_(view) {}
+  // Samples lie no farther from the pixels' centres than `reach`, 1/256 pixel.
+  explicit Pretiler(const ViewTransform& view, std::int32_t reach = 0) : view_(view), reach_(reach) {}
 
   // Adds the node's faces to the bins as RasterTriangle::node `number`, in their order, and counts those that
   // leave nothing.
@@ -101,6 +102,7 @@ class Pretiler {
                       TileBins::Writer& bins) const;
 
   ViewTransform view_;
+  std::int32_t reach_;
 };
 
 }  // namespace deltaz

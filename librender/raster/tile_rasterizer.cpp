@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
@@ -26,6 +27,8 @@ inline constexpr std::size_t kBatch = 16;
 struct alignas(64) SetUpBatch {
   std::int32_t per_j[2][kBatch], per_i[2][kBatch];
   std::int32_t at_first_block[3][kBatch];  // constant at the first pixel of the first block
+  std::int32_t remainder[3]
+                        [kBatch];  // 256ths of the constants that rounding took; only where samples are moved
   // Blocks of the tile that the bounding box touches, first_j | first_i << 8 | last_j << 16 | last_i << 24; a
   // first that is greater than the last if there are none.
   std::uint32_t blocks[kBatch];
@@ -39,6 +42,8 @@ struct alignas(64) SetUpBatch {
 // 32 bits.
 inline constexpr double kSaturation = 1 << 30;
 static_assert(2 * 2.0 * kGuardBand * kSubPixels * (kTileSide + 2 * kBlockSide) < kSaturation);
+// Samples are moved by less than half a pixel.
+static_assert(2 * 2.0 * kGuardBand * kSubPixels * (kSubPixels / 2) < kSaturation * 2);
 
 }  // namespace deltaz
 #endif
@@ -75,28 +80,29 @@ class TileRasterizer {
         written_(hn::Zero(kInt)) {}
 
   void run(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
-    if (columns_ % kBlockSide == 0 && rows_ % kBlockSide == 0) {
-      runBatches<false>(triangles, crossing);
+    const bool cut = columns_ % kBlockSide != 0 || rows_ % kBlockSide != 0;
+    if (tile_.offsets != nullptr) {
+      cut ? runBatches<true, true>(triangles, crossing) : runBatches<false, true>(triangles, crossing);
     } else {
-      runBatches<true>(triangles, crossing);
+      cut ? runBatches<true, false>(triangles, crossing) : runBatches<false, false>(triangles, crossing);
     }
     counts_.tested += static_cast<std::uint64_t>(sum(tested_));
     counts_.written += static_cast<std::uint64_t>(sum(written_));
   }
 
  private:
-  // `kCut`: the picture ends inside blocks of the tile.
-  template <bool kCut>
+  // `kCut`: the picture ends inside blocks of the tile. `kMoved`: samples are not the pixels' centres.
+  template <bool kCut, bool kMoved>
   void runBatches(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
     SetUpBatch batch;
     for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, triangles.size() - first);
-      setUp(triangles.data() + first, count, batch);
+      setUp<kMoved>(triangles.data() + first, count, batch);
       // The triangles after next are on their way while these are drawn.
       for (std::size_t t = first + kBatch; t < std::min(first + 2 * kBatch, triangles.size()); ++t)
         hwy::Prefetch(triangles[t]);
       for (std::size_t t = 0; t < count; ++t) {
-        const Outcome outcome = draw<kCut>(batch, t, static_cast<std::int32_t>(first + t));
+        const Outcome outcome = draw<kCut, kMoved>(batch, t, static_cast<std::int32_t>(first + t));
         settle(outcome, triangles[first + t]->crossing, crossing);
       }
     }
@@ -125,6 +131,7 @@ class TileRasterizer {
     return std::accumulate(lanes, lanes + kLanes, std::int64_t{0});
   }
 
+  template <bool kMoved>
   HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count, SetUpBatch& batch) const {
     alignas(64) RasterVertex vertex[3][kBatch];
     for (std::size_t t = 0; t < kBatch; ++t) {
@@ -158,14 +165,17 @@ class TileRasterizer {
         hn::Store(hn::Sub(sy[k], sy[k + 1]), kInt, batch.per_j[k] + t);
         hn::Store(hn::Sub(sx[k + 1], sx[k]), kInt, batch.per_i[k] + t);
       }
+      const std::int32_t reach = kMoved ? tile_.offsets->reach : 0;
       const auto first_of = [&](const Ints* s) {
         const Ints least = hn::Min(hn::Min(s[0], s[1]), s[2]);
-        const Ints rounded = hn::ShiftRight<kSubPixelBits>(hn::Add(least, hn::Set(kInt, kSubPixels - 1)));
+        const Ints rounded =
+            hn::ShiftRight<kSubPixelBits>(hn::Add(least, hn::Set(kInt, kSubPixels - 1 - reach)));
         return hn::ShiftRight<2>(hn::Max(hn::Zero(kInt), rounded));
       };
       const auto last_of = [&](const Ints* s, int extent) {
         const Ints greatest = hn::Max(hn::Max(s[0], s[1]), s[2]);
-        return hn::ShiftRight<2>(hn::Min(hn::Set(kInt, extent - 1), hn::ShiftRight<kSubPixelBits>(greatest)));
+        const Ints rounded = hn::ShiftRight<kSubPixelBits>(hn::Add(greatest, hn::Set(kInt, reach)));
+        return hn::ShiftRight<2>(hn::Min(hn::Set(kInt, extent - 1), rounded));
       };
       const Ints first_j = first_of(sx), first_i = first_of(sy);
       const Ints last_j = last_of(sx, columns_), last_i = last_of(sy, rows_);
@@ -206,6 +216,10 @@ class TileRasterizer {
         const auto scaled = hn::Floor(hn::Mul(constant, hn::Set(d, 1.0 / kSubPixels)));
         const auto limited = hn::Min(hn::Max(scaled, hn::Set(d, -kSaturation)), hn::Set(d, kSaturation));
         hn::Store(hn::DemoteTo(half_int, limited), half_int, at_origin[k] + t);
+        if constexpr (kMoved) {
+          const auto rest = hn::Sub(constant, hn::Mul(scaled, hn::Set(d, kSubPixels)));
+          hn::Store(hn::DemoteTo(half_int, rest), half_int, batch.remainder[k] + t);
+        }
       }
       const auto at = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
       const auto x0 = at(x[0]), y0 = at(y[0]), w0 = at(w[0]);
@@ -246,7 +260,7 @@ class TileRasterizer {
     Ints number;
   };
 
-  template <bool kCut>
+  template <bool kCut, bool kMoved>
   HWY_INLINE Outcome draw(const SetUpBatch& batch, std::size_t t, std::int32_t number) {
     const std::uint32_t blocks = batch.blocks[t];
     const auto first_j = static_cast<std::int32_t>(blocks & 0xFF),
@@ -267,9 +281,23 @@ class TileRasterizer {
             hn::Add(hn::Mul(hn::Set(kInt, per_j[k]), lane_j), hn::Mul(hn::Set(kInt, per_i[k]), lane_i));
       }
       lanes.edge[2][v] = hn::Neg(hn::Add(lanes.edge[0][v], lanes.edge[1][v]));
-      lanes.inverse_u[v] =
-          hn::Add(hn::Mul(hn::Set(kFloat, batch.gradient_x[t]), hn::Load(kFloat, kLaneX + v * kLanes)),
-                  hn::Mul(hn::Set(kFloat, batch.gradient_y[t]), hn::Load(kFloat, kLaneY + v * kLanes)));
+      Floats x = hn::Load(kFloat, kLaneX + v * kLanes), y = hn::Load(kFloat, kLaneY + v * kLanes);
+      if constexpr (kMoved) {
+        const Ints moved_x = hn::Load(kInt, tile_.offsets->x + v * kLanes),
+                   moved_y = hn::Load(kInt, tile_.offsets->y + v * kLanes);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Ints moved =
+              hn::Add(hn::Mul(hn::Set(kInt, per_j[k]), moved_x), hn::Mul(hn::Set(kInt, per_i[k]), moved_y));
+          lanes.edge[k][v] =
+              hn::Add(lanes.edge[k][v],
+                      hn::ShiftRight<kSubPixelBits>(hn::Add(moved, hn::Set(kInt, batch.remainder[k][t]))));
+        }
+        const Floats unit = hn::Set(kFloat, 1.0F / kSubPixels);
+        x = hn::Add(x, hn::Mul(hn::ConvertTo(kFloat, moved_x), unit));
+        y = hn::Add(y, hn::Mul(hn::ConvertTo(kFloat, moved_y), unit));
+      }
+      lanes.inverse_u[v] = hn::Add(hn::Mul(hn::Set(kFloat, batch.gradient_x[t]), x),
+                                   hn::Mul(hn::Set(kFloat, batch.gradient_y[t]), y));
     }
     lanes.least = hn::Set(kFloat, batch.least[t]);
     lanes.greatest = hn::Set(kFloat, batch.greatest[t]);
@@ -281,9 +309,9 @@ class TileRasterizer {
       for (std::size_t k = 0; k < 3; ++k)
         corner[k] = batch.at_first_block[k][t] - per_j[k] * (first_j * kBlockSide);
       for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
-        drawWideRow<kCut>(lanes, per_j, per_i, corner,
-                          batch.at_first[t] + step_y * static_cast<float>(block_i - first_i), step_x, first_j,
-                          last_j, block_i, outcome);
+        drawWideRow<kCut, kMoved>(lanes, per_j, per_i, corner,
+                                  batch.at_first[t] + step_y * static_cast<float>(block_i - first_i), step_x,
+                                  first_j, last_j, block_i, outcome);
         for (std::size_t k = 0; k < 3; ++k) corner[k] += per_i[k] * kBlockSide;
       }
       return outcome;
@@ -313,7 +341,7 @@ class TileRasterizer {
 
   // All 16 blocks of a row at once: which lie outside an edge, which inside all of them, which behind what is
   // there. `corner`: the edge functions at the tile's first pixel of the row.
-  template <bool kCut>
+  template <bool kCut, bool kMoved>
   HWY_INLINE void drawWideRow(const Lanes& lanes, const std::int32_t (&per_j)[3],
                               const std::int32_t (&per_i)[3], const std::int32_t (&corner)[3], float row_u,
                               float step_x, std::int32_t first_j, std::int32_t last_j, std::int32_t block_i,
@@ -328,8 +356,14 @@ class TileRasterizer {
         const Ints value =
             hn::Add(hn::Set(kInt, corner[k]), hn::Mul(hn::Set(kInt, per_j[k] * kBlockSide), block_j));
         hn::Store(value, kInt, at_block[k] + v);
-        const std::int32_t low = std::min(0, kFar * per_j[k]) + std::min(0, kFar * per_i[k]);
-        const std::int32_t high = std::max(0, kFar * per_j[k]) + std::max(0, kFar * per_i[k]);
+        std::int32_t low = std::min(0, kFar * per_j[k]) + std::min(0, kFar * per_i[k]);
+        std::int32_t high = std::max(0, kFar * per_j[k]) + std::max(0, kFar * per_i[k]);
+        if constexpr (kMoved) {
+          const std::int32_t moved =
+              1 + ((std::abs(per_j[k]) + std::abs(per_i[k])) * tile_.offsets->reach >> kSubPixelBits);
+          low -= moved;
+          high += moved;
+        }
         least = hn::Min(least, hn::Add(value, hn::Set(kInt, low)));
         greatest = hn::Min(greatest, hn::Add(value, hn::Set(kInt, high)));
       }

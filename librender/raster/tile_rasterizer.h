@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <span>
 
+#include "librender/antialias/sample_pattern.h"
 #include "librender/raster/raster_triangle.h"
 #include "librender/raster/tile_bins.h"
 
@@ -60,6 +61,8 @@ inline constexpr std::uint8_t kCrossingCovers = 1, kCrossingHidden = 2;
 struct Tile {
   int j = 0, i = 0;           // in tiles
   int width = 0, height = 0;  // of the picture, pixels
+  // How samples are moved from the pixels' centres; nullptr: they are the centres.
+  const SampleOffsets* offsets = nullptr;
 };
 
 // Adds to `counts`. `crossing` has an entry for each number of RasterTriangle::crossing.

@@ -28,8 +28,9 @@ SettledTile::Seen SettledTile::at(int j, int i) const {
 
 class Tiler {
  public:
-  Tiler(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view)
-      : bins_(bins), nodes_(nodes), view_(view), crossing_(bins.crossingCount(), 0) {}
+  Tiler(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
+        const SampleOffsets* offsets)
+      : bins_(bins), nodes_(nodes), view_(view), offsets_(offsets), crossing_(bins.crossingCount(), 0) {}
 
   TiledFrame run() {
     TiledFrame frame;
@@ -69,8 +70,9 @@ class Tiler {
     if (scratch.triangles.empty()) return;
     scratch.buffer.clear();
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
-    rasterizeTile({static_cast<int>(t % across), static_cast<int>(t / across), view_.width, view_.height},
-                  scratch.triangles, crossing_, scratch.buffer, scratch.counts);
+    rasterizeTile(
+        {static_cast<int>(t % across), static_cast<int>(t / across), view_.width, view_.height, offsets_},
+        scratch.triangles, crossing_, scratch.buffer, scratch.counts);
 
     // Planes are made when a face is first met.
     scratch.slot.assign(scratch.triangles.size(), kNoTriangle);
@@ -93,11 +95,13 @@ class Tiler {
   const TileBins& bins_;
   const std::vector<PretiledNode>& nodes_;
   const ViewTransform& view_;
+  const SampleOffsets* offsets_;
   std::vector<std::uint8_t> crossing_;
 };
 
-TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view) {
-  return Tiler(bins, nodes, view).run();
+TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
+                const SampleOffsets* offsets) {
+  return Tiler(bins, nodes, view, offsets).run();
 }
 
 }  // namespace deltaz

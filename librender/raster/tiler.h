@@ -50,7 +50,8 @@ struct TiledFrame {
   TilerStatistics statistics;
 };
 
-// `nodes` are those whose faces lie in the bins, by RasterTriangle::node.
-TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view);
+// `nodes` are those whose faces lie in the bins, by RasterTriangle::node. `offsets`: as of Tile.
+TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
+                const SampleOffsets* offsets = nullptr);
 
 }  // namespace deltaz

@@ -5,19 +5,19 @@
 namespace deltaz {
 
 TrianglePlacement placeTriangle(const std::array<std::int32_t, 3>& x, const std::array<std::int32_t, 3>& y,
-                                int width, int height) {
+                                int width, int height, std::int32_t reach) {
   const std::int32_t least_x = std::min({x[0], x[1], x[2]}), greatest_x = std::max({x[0], x[1], x[2]});
   const std::int32_t least_y = std::min({y[0], y[1], y[2]}), greatest_y = std::max({y[0], y[1], y[2]});
   const std::int32_t last_x = (width - 1) * kSubPixels, last_y = (height - 1) * kSubPixels;
-  if (greatest_x < 0 || least_x > last_x || greatest_y < 0 || least_y > last_y)
+  if (greatest_x < -reach || least_x > last_x + reach || greatest_y < -reach || least_y > last_y + reach)
     return {TriangleFate::kOutside, {}};
   const std::int64_t area = (std::int64_t{x[1]} - x[0]) * (std::int64_t{y[2]} - y[0]) -
                             (std::int64_t{x[2]} - x[0]) * (std::int64_t{y[1]} - y[0]);
   if (area < 0) return {TriangleFate::kBackFacing, {}};
-  const std::int32_t first_j = std::max(0, (least_x + kSubPixels - 1) >> kSubPixelBits);
-  const std::int32_t first_i = std::max(0, (least_y + kSubPixels - 1) >> kSubPixelBits);
-  const std::int32_t last_j = std::min(greatest_x, last_x) >> kSubPixelBits;
-  const std::int32_t last_i = std::min(greatest_y, last_y) >> kSubPixelBits;
+  const std::int32_t first_j = std::max(0, (least_x - reach + kSubPixels - 1) >> kSubPixelBits);
+  const std::int32_t first_i = std::max(0, (least_y - reach + kSubPixels - 1) >> kSubPixelBits);
+  const std::int32_t last_j = std::min(greatest_x + reach, last_x) >> kSubPixelBits;
+  const std::int32_t last_i = std::min(greatest_y + reach, last_y) >> kSubPixelBits;
   if (area == 0 || first_j > last_j || first_i > last_i) return {TriangleFate::kNoSample, {}};
   return {TriangleFate::kKept,
           {first_j / kTileSide, first_i / kTileSide, last_j / kTileSide, last_i / kTileSide}};

@@ -18,9 +18,10 @@ struct TrianglePlacement {
   TileRange tiles;  // if kept
 };
 
-// Snapped coordinates of the vertices in the order of RasterTriangle, all of them in the guard band.
+// Snapped coordinates of the vertices in the order of RasterTriangle, all of them in the guard band. `reach`
+// as in grid_culler.h.
 TrianglePlacement placeTriangle(const std::array<std::int32_t, 3>& x, const std::array<std::int32_t, 3>& y,
-                                int width, int height);
+                                int width, int height, std::int32_t reach = 0);
 
 // A polygon of at most seven corners on the screen: pieces of one face that was clipped.
 struct ClippedFace {

@@ -1,6 +1,7 @@
 #include "librender/raster/tile_rasterizer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <random>
 
 #include "libdb/access/simd_target.h"
+#include "librender/antialias/sample_pattern.h"
 #include "librender/raster/coverage.h"
 #include "librender/raster/triangle_placement.h"
 
@@ -106,28 +108,39 @@ struct Drawn {
   TileCounts counts;
 };
 
+// Samples at the pixels' centres, and moved from there in two ways.
+const std::array<const SampleOffsets*, 3> kOffsets = {nullptr, sampleOffsets(4, SamplePattern::kRotated),
+                                                      sampleOffsets(16, SamplePattern::kRotated)};
+
+// Where a sample lies from its pixel's centre, 1/256 pixel.
+SamplePlace placeOf(const SampleOffsets* offsets, int j, int i) {
+  if (offsets == nullptr) return {0, 0};
+  const auto k = static_cast<std::size_t>(i % kBlockSide * kBlockSide + j % kBlockSide);
+  return {offsets->x[k], offsets->y[k]};
+}
+
 // Triangles without area are not handed to the tiler.
-Drawn draw(const std::vector<RasterTriangle>& triangles) {
+Drawn draw(const std::vector<RasterTriangle>& triangles, const SampleOffsets* offsets = nullptr) {
   std::vector<const RasterTriangle*> kept;
   for (const RasterTriangle& triangle : triangles) {
     if (doubledArea(snapped(triangle)) > 0) kept.push_back(&triangle);
   }
   Drawn drawn;
   drawn.buffer->clear();
-  rasterizeTile({0, 0, kSide, kSide}, kept, {}, *drawn.buffer, drawn.counts);
+  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, {}, *drawn.buffer, drawn.counts);
   return drawn;
 }
 
 TEST(tile_rasterizer, meshes_with_shared_edges_cover_every_sample_exactly_once) {
   onEveryTarget([] {
     std::mt19937 random(7);
-    std::size_t triangles = 0;
+    std::size_t triangles = 0, meshes = 0;
     while (triangles < wantedTriangles()) {
       const double cell =
           std::exp(std::uniform_real_distribution<double>(std::log(0.3), std::log(60.0))(random));
       const std::vector<RasterTriangle> mesh = shakenMesh(cell, random);
       triangles += mesh.size();
-      const Drawn drawn = draw(mesh);
+      const Drawn drawn = draw(mesh, kOffsets[meshes++ % kOffsets.size()]);
       ASSERT_EQ(drawn.counts.hidden, 0U);
       // As many samples as there are, and none left out: each once.
       ASSERT_EQ(drawn.counts.tested, static_cast<std::uint64_t>(kSide * kSide)) << "cell " << cell;
@@ -163,13 +176,25 @@ std::vector<RasterTriangle> randomTriangles(std::size_t count, std::mt19937& ran
 TEST(tile_rasterizer, covers_what_exact_integers_say_one_triangle_at_a_time) {
   onEveryTarget([] {
     std::mt19937 random(11);
-    for (const RasterTriangle& triangle : randomTriangles(3000, random)) {
-      const Drawn drawn = draw({triangle});
-      std::vector<std::uint8_t> covered(kSide * kSide, 0);
+    std::size_t count = 0;
+    for (const RasterTriangle& triangle : randomTriangles(6000, random)) {
+      const SampleOffsets* const offsets = kOffsets[count++ % kOffsets.size()];
+      const Drawn drawn = draw({triangle}, offsets);
       const SnappedTriangle exact = snapped(triangle);
-      forEachSample(exact, sampleBounds(exact, kSide, kSide), [&](std::int32_t j, std::int32_t i) {
-        covered[static_cast<std::size_t>(i * kSide + j)] = 1;
-      });
+      // A moved sample sees the triangle where a centre sees it moved the other way.
+      std::vector<std::uint8_t> covered(kSide * kSide, 0);
+      for (int place = 0; place < (offsets == nullptr ? 1 : kBlockPixels); ++place) {
+        const SamplePlace moved = placeOf(offsets, place % kBlockSide, place / kBlockSide);
+        SnappedTriangle seen = exact;
+        for (std::size_t k = 0; k < 3; ++k) {
+          seen.x[k] -= moved.x;
+          seen.y[k] -= moved.y;
+        }
+        forEachSample(seen, sampleBounds(seen, kSide, kSide), [&](std::int32_t j, std::int32_t i) {
+          if (offsets == nullptr || i % kBlockSide * kBlockSide + j % kBlockSide == place)
+            covered[static_cast<std::size_t>(i * kSide + j)] = 1;
+        });
+      }
       for (int i = 0; i < kSide; ++i) {
         for (int j = 0; j < kSide; ++j) {
           ASSERT_EQ(drawn.buffer->inverse_u[tileIndex(j, i)] > 0,
@@ -183,8 +208,10 @@ TEST(tile_rasterizer, covers_what_exact_integers_say_one_triangle_at_a_time) {
 
 TEST(tile_rasterizer, depth_is_the_plane_of_the_vertices_and_stays_in_their_range) {
   std::mt19937 random(13);
-  for (const RasterTriangle& triangle : randomTriangles(2000, random)) {
-    const Drawn drawn = draw({triangle});
+  std::size_t count = 0;
+  for (const RasterTriangle& triangle : randomTriangles(4000, random)) {
+    const SampleOffsets* const offsets = kOffsets[count++ % kOffsets.size()];
+    const Drawn drawn = draw({triangle}, offsets);
     const auto& [a, b, c] = triangle.vertex;
     const double bx = double{b.x} - double{a.x}, by = double{b.y} - double{a.y},
                  cx = double{c.x} - double{a.x}, cy = double{c.y} - double{a.y};
@@ -197,7 +224,9 @@ TEST(tile_rasterizer, depth_is_the_plane_of_the_vertices_and_stays_in_their_rang
         if (there == 0) continue;
         ASSERT_GE(there, least);
         ASSERT_LE(there, greatest);
-        const double dx = j - (kSide - 1) / 2.0 - double{a.x}, dy = i - (kSide - 1) / 2.0 - double{a.y};
+        const SamplePlace moved = placeOf(offsets, j, i);
+        const double dx = j + moved.x / 256.0 - (kSide - 1) / 2.0 - double{a.x},
+                     dy = i + moved.y / 256.0 - (kSide - 1) / 2.0 - double{a.y};
         const double u1 = (dx * cy - dy * cx) / determinant, u2 = (bx * dy - by * dx) / determinant;
         const double plane = double{a.inverse_u} + u1 * (double{b.inverse_u} - double{a.inverse_u}) +
                              u2 * (double{c.inverse_u} - double{a.inverse_u});
@@ -214,22 +243,24 @@ TEST(tile_rasterizer, depth_is_the_plane_of_the_vertices_and_stays_in_their_rang
 TEST(tile_rasterizer, every_vector_width_gives_the_same_buffer_and_counts) {
   std::mt19937 random(17);
   const std::vector<RasterTriangle> triangles = randomTriangles(4000, random);
-  std::optional<Drawn> first;
-  onEveryTarget([&] {
-    Drawn drawn = draw(triangles);
-    if (!first) {
-      first = std::move(drawn);
-      return;
-    }
-    EXPECT_EQ(drawn.buffer->inverse_u, first->buffer->inverse_u);
-    EXPECT_EQ(drawn.buffer->least, first->buffer->least);
-    EXPECT_EQ(drawn.buffer->whole, first->buffer->whole);
-    EXPECT_EQ(drawn.counts.tested, first->counts.tested);
-    EXPECT_EQ(drawn.counts.written, first->counts.written);
-    EXPECT_EQ(drawn.counts.hidden, first->counts.hidden);
-    EXPECT_EQ(drawn.counts.drawn, first->counts.drawn);
-    EXPECT_EQ(drawn.counts.no_sample, first->counts.no_sample);
-  });
+  for (const SampleOffsets* const offsets : kOffsets) {
+    std::optional<Drawn> first;
+    onEveryTarget([&] {
+      Drawn drawn = draw(triangles, offsets);
+      if (!first) {
+        first = std::move(drawn);
+        return;
+      }
+      EXPECT_EQ(drawn.buffer->inverse_u, first->buffer->inverse_u);
+      EXPECT_EQ(drawn.buffer->least, first->buffer->least);
+      EXPECT_EQ(drawn.buffer->whole, first->buffer->whole);
+      EXPECT_EQ(drawn.counts.tested, first->counts.tested);
+      EXPECT_EQ(drawn.counts.written, first->counts.written);
+      EXPECT_EQ(drawn.counts.hidden, first->counts.hidden);
+      EXPECT_EQ(drawn.counts.drawn, first->counts.drawn);
+      EXPECT_EQ(drawn.counts.no_sample, first->counts.no_sample);
+    });
+  }
 }
 
 TEST(tile_rasterizer, the_nearest_triangle_owns_each_pixel_and_of_equals_the_first) {
