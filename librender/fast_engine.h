@@ -3,6 +3,7 @@
 // how many threads.
 #pragma once
 
+#include "librender/frame_scratch.h"
 #include "librender/scene/render.h"
 
 namespace deltaz {
@@ -11,6 +12,9 @@ class FastEngine : public Engine {
  public:
   Result<Picture> render(const Database& database, const RenderOptions& options,
                          FrameStatistics& statistics) const override;
+
+ private:
+  mutable FrameScratchPool scratches_;  // one frame uses one; kept for the next
 };
 
 }  // namespace deltaz

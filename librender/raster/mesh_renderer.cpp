@@ -344,7 +344,7 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
     const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};
     worker.buffer.clear();
-    rasterizeTile(tile, worker.triangles, crossing_, worker.buffer, worker.tile_counts);
+    rasterizeTile(tile, worker.triangles, 0, crossing_, worker.buffer, worker.tile_counts);
     shadeTileGouraud(tile, worker.triangles, worker.buffer, worker.scratch, frame);
   });
 

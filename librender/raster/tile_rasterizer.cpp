@@ -79,12 +79,15 @@ class TileRasterizer {
         tested_(hn::Zero(kInt)),
         written_(hn::Zero(kInt)) {}
 
-  void run(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
+  void run(std::span<const RasterTriangle* const> triangles, std::size_t from,
+           std::span<std::uint8_t> crossing) {
     const bool cut = columns_ % kBlockSide != 0 || rows_ % kBlockSide != 0;
     if (tile_.offsets != nullptr) {
-      cut ? runBatches<true, true>(triangles, crossing) : runBatches<false, true>(triangles, crossing);
+      cut ? runBatches<true, true>(triangles, from, crossing)
+          : runBatches<false, true>(triangles, from, crossing);
     } else {
-      cut ? runBatches<true, false>(triangles, crossing) : runBatches<false, false>(triangles, crossing);
+      cut ? runBatches<true, false>(triangles, from, crossing)
+          : runBatches<false, false>(triangles, from, crossing);
     }
     counts_.tested += static_cast<std::uint64_t>(sum(tested_));
     counts_.written += static_cast<std::uint64_t>(sum(written_));
@@ -93,9 +96,10 @@ class TileRasterizer {
  private:
   // `kCut`: the picture ends inside blocks of the tile. `kMoved`: samples are not the pixels' centres.
   template <bool kCut, bool kMoved>
-  void runBatches(std::span<const RasterTriangle* const> triangles, std::span<std::uint8_t> crossing) {
+  void runBatches(std::span<const RasterTriangle* const> triangles, std::size_t from,
+                  std::span<std::uint8_t> crossing) {
     SetUpBatch batch;
-    for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
+    for (std::size_t first = from; first < triangles.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, triangles.size() - first);
       setUp<kMoved>(triangles.data() + first, count, batch);
       // The triangles after next are on their way while these are drawn.
@@ -471,9 +475,9 @@ class TileRasterizer {
   Ints tested_, written_;     // a lane each
 };
 
-void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles,
+void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts) {
-  TileRasterizer(tile, buffer, counts).run(triangles, crossing);
+  TileRasterizer(tile, buffer, counts).run(triangles, first, crossing);
 }
 
 }  // namespace
@@ -493,9 +497,9 @@ void TileBuffer::clear() {
   least.fill(0);
 }
 
-void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles,
+void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                    std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(rasterize)(tile, triangles, crossing, buffer, counts);
+  HWY_DYNAMIC_DISPATCH(rasterize)(tile, triangles, first, crossing, buffer, counts);
 }
 
 }  // namespace deltaz

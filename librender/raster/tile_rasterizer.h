@@ -65,8 +65,9 @@ struct Tile {
   const SampleOffsets* offsets = nullptr;
 };
 
-// Adds to `counts`. `crossing` has an entry for each number of RasterTriangle::crossing.
-void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles,
+// Draws triangles[first] and those that follow; owners in `buffer` are indices into `triangles`. Adds to
+// `counts`. `crossing` has an entry for each number of RasterTriangle::crossing.
+void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                    std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts);
 
 }  // namespace deltaz

@@ -2,22 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace deltaz {
-namespace {
-
-// What a worker needs for a tile, kept from tile to tile.
-struct Scratch {
-  TileBuffer buffer;
-  TileCounts counts;
-  std::vector<TileBins::Segment> segments;
-  std::vector<const RasterTriangle*> triangles;
-  std::vector<std::uint32_t> slot;  // of a triangle among the faces that are seen
-};
-
-}  // namespace
 
 SettledTile::Seen SettledTile::at(int j, int i) const {
   if (owner_.empty()) return {};
@@ -26,82 +14,93 @@ SettledTile::Seen SettledTile::at(int j, int i) const {
   return {&faces_[owner].planes, faces_[owner].grid};
 }
 
-class Tiler {
- public:
-  Tiler(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
-        const SampleOffsets* offsets)
-      : bins_(bins), nodes_(nodes), view_(view), offsets_(offsets), crossing_(bins.crossingCount(), 0) {}
-
-  TiledFrame run() {
-    TiledFrame frame;
-    frame.width = view_.width;
-    frame.height = view_.height;
-    frame.across = bins_.tilesAcross();
-    frame.tiles.resize(bins_.tileCount());
-    tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratches(
-        [] { return std::make_unique<Scratch>(); });
-    tbb::parallel_for(std::size_t{0}, frame.tiles.size(),
-                      [&](std::size_t t) { settle(t, *scratches.local(), frame.tiles[t]); });
-    for (const std::unique_ptr<Scratch>& scratch : scratches) {
-      frame.statistics.tested += scratch->counts.tested;
-      frame.statistics.written += scratch->counts.written;
-      frame.statistics.faces_drawn += scratch->counts.drawn;
-      frame.statistics.hidden += scratch->counts.hidden;
-      frame.statistics.no_sample += scratch->counts.no_sample;
-    }
-    std::uint64_t covers = 0, hidden = 0;
-    for (const std::uint8_t bits : crossing_) {
-      covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
-      hidden += bits == kCrossingHidden ? 1 : 0;
-    }
-    frame.statistics.faces_drawn += covers + hidden;
-    frame.statistics.hidden += hidden;
-    frame.statistics.no_sample += bins_.crossingTriangles() - covers - hidden;
-    return frame;
+void Tiler::begin(int width, int height, const SampleOffsets* offsets) {
+  offsets_ = offsets;
+  frame_.width = width;
+  frame_.height = height;
+  frame_.across = (width + kTileSide - 1) / kTileSide;
+  const int down = (height + kTileSide - 1) / kTileSide;
+  frame_.statistics = crossing_counts_ = {};
+  frame_.tiles.resize(static_cast<std::size_t>(frame_.across) * static_cast<std::size_t>(down));
+  open_.resize(frame_.tiles.size());
+  for (const std::unique_ptr<OpenTile>& tile : open_) {
+    if (tile) tile->triangles.clear();
   }
+  workers_.resize(
+      std::max(workers_.size(), static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
+  for (Worker& worker : workers_) worker.counts = {};
+}
 
- private:
-  void settle(std::size_t t, Scratch& scratch, SettledTile& tile) {
-    bins_.segmentsOf(t, scratch.segments);
-    scratch.triangles.clear();
-    for (const TileBins::Segment& segment : scratch.segments) {
-      for (std::uint32_t n = 0; n < segment.count; ++n) scratch.triangles.push_back(segment.first + n);
-    }
-    if (scratch.triangles.empty()) return;
-    scratch.buffer.clear();
-    const auto across = static_cast<std::size_t>(bins_.tilesAcross());
-    rasterizeTile(
-        {static_cast<int>(t % across), static_cast<int>(t / across), view_.width, view_.height, offsets_},
-        scratch.triangles, crossing_, scratch.buffer, scratch.counts);
+Tiler::Worker& Tiler::worker() {
+  return workers_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
+}
 
-    // Planes are made when a face is first met.
-    scratch.slot.assign(scratch.triangles.size(), kNoTriangle);
-    tile.owner_.assign(scratch.buffer.inverse_u.size(), kNoTriangle);
-    for (std::size_t pixel = 0; pixel < tile.owner_.size(); ++pixel) {
-      if (scratch.buffer.inverse_u[pixel] == 0) continue;
-      const std::uint32_t whole = scratch.buffer.whole[pixel / kBlockPixels];
-      const std::uint32_t owner = whole != kNoTriangle ? whole : scratch.buffer.triangle[pixel];
-      std::uint32_t& slot = scratch.slot[owner];
-      if (slot == kNoTriangle) {
-        slot = static_cast<std::uint32_t>(tile.faces_.size());
-        const RasterTriangle& triangle = *scratch.triangles[owner];
-        const PretiledNode& node = nodes_[triangle.node];
-        tile.faces_.push_back({facePlanes(view_, node, triangle.face), node.grid});
-      }
-      tile.owner_[pixel] = slot;
-    }
+void Tiler::draw(const TileBins& bins) {
+  crossing_.assign(bins.crossingCount(), 0);
+  tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) { drawTile(bins, t, worker()); });
+  std::uint64_t covers = 0, hidden = 0;
+  for (const std::uint8_t bits : crossing_) {
+    covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
+    hidden += bits == kCrossingHidden ? 1 : 0;
   }
+  crossing_counts_.faces_drawn += covers + hidden;
+  crossing_counts_.hidden += hidden;
+  crossing_counts_.no_sample += bins.crossingTriangles() - covers - hidden;
+}
 
-  const TileBins& bins_;
-  const std::vector<PretiledNode>& nodes_;
-  const ViewTransform& view_;
-  const SampleOffsets* offsets_;
-  std::vector<std::uint8_t> crossing_;
-};
+void Tiler::drawTile(const TileBins& bins, std::size_t t, Worker& worker) {
+  bins.segmentsOf(t, worker.segments);
+  if (worker.segments.empty()) return;
+  if (!open_[t]) open_[t] = std::make_unique<OpenTile>();
+  OpenTile& open = *open_[t];
+  const std::size_t before = open.triangles.size();
+  for (const TileBins::Segment& segment : worker.segments) {
+    for (std::uint32_t n = 0; n < segment.count; ++n) open.triangles.push_back(segment.first + n);
+  }
+  if (before == 0) open.buffer.clear();
+  const auto across = static_cast<std::size_t>(frame_.across);
+  rasterizeTile(
+      {static_cast<int>(t % across), static_cast<int>(t / across), frame_.width, frame_.height, offsets_},
+      open.triangles, before, crossing_, open.buffer, worker.counts);
+}
 
-TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
-                const SampleOffsets* offsets) {
-  return Tiler(bins, nodes, view, offsets).run();
+const TiledFrame& Tiler::settle(const std::vector<PretiledNode>& nodes, const ViewTransform& view) {
+  tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) {
+    frame_.tiles[t].faces_.clear();
+    frame_.tiles[t].owner_.clear();
+    if (open_[t] && !open_[t]->triangles.empty())
+      settleTile(*open_[t], nodes, view, worker(), frame_.tiles[t]);
+  });
+  frame_.statistics = crossing_counts_;
+  for (const Worker& worker : workers_) {
+    frame_.statistics.tested += worker.counts.tested;
+    frame_.statistics.written += worker.counts.written;
+    frame_.statistics.faces_drawn += worker.counts.drawn;
+    frame_.statistics.hidden += worker.counts.hidden;
+    frame_.statistics.no_sample += worker.counts.no_sample;
+  }
+  return frame_;
+}
+
+void Tiler::settleTile(const OpenTile& open, const std::vector<PretiledNode>& nodes,
+                       const ViewTransform& view, Worker& worker, SettledTile& tile) {
+  const TileBuffer& buffer = open.buffer;
+  // Planes are made when a face is first met.
+  worker.slot.assign(open.triangles.size(), kNoTriangle);
+  tile.owner_.assign(buffer.inverse_u.size(), kNoTriangle);
+  for (std::size_t pixel = 0; pixel < tile.owner_.size(); ++pixel) {
+    if (buffer.inverse_u[pixel] == 0) continue;
+    const std::uint32_t whole = buffer.whole[pixel / kBlockPixels];
+    const std::uint32_t owner = whole != kNoTriangle ? whole : buffer.triangle[pixel];
+    std::uint32_t& slot = worker.slot[owner];
+    if (slot == kNoTriangle) {
+      slot = static_cast<std::uint32_t>(tile.faces_.size());
+      const RasterTriangle& triangle = *open.triangles[owner];
+      const PretiledNode& node = nodes[triangle.node];
+      tile.faces_.push_back({facePlanes(view, node, triangle.face), node.grid});
+    }
+    tile.owner_[pixel] = slot;
+  }
 }
 
 }  // namespace deltaz

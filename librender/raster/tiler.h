@@ -1,8 +1,12 @@
 // The tiler (report 4.2): binned triangles -> for every pixel the nearest of them, tile by tile, and the
 // planes of the faces that are seen.
 //
+// A frame is drawn in batches, front to back. What is there after one tells which nodes of the next cannot be
+// seen (isHidden), so that they need not be read.
+//
 // Tiles are drawn on the threads of the caller's TBB arena; the result does not depend on them, nor do the
-// counts.
+// counts. Memory is kept from frame to frame. Thread-safety: one frame at a time; isHidden from any thread
+// between calls of the others.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +54,39 @@ struct TiledFrame {
   TilerStatistics statistics;
 };
 
-// `nodes` are those whose faces lie in the bins, by RasterTriangle::node. `offsets`: as of Tile.
-TiledFrame tile(const TileBins& bins, const std::vector<PretiledNode>& nodes, const ViewTransform& view,
-                const SampleOffsets* offsets = nullptr);
+// A tile that is being drawn.
+struct OpenTile {
+  TileBuffer buffer;                             // once there are triangles
+  std::vector<const RasterTriangle*> triangles;  // so far; owners in `buffer` are their indices
+};
+
+class Tiler {
+ public:
+  // Begins a frame: nothing is seen yet. `offsets`: as of Tile.
+  void begin(int width, int height, const SampleOffsets* offsets = nullptr);
+  // Draws what lies in the bins, which must stay as they are until the frame is settled.
+  void draw(const TileBins& bins);
+  // `nodes` are those whose faces were drawn, by RasterTriangle::node. Valid until the next frame.
+  const TiledFrame& settle(const std::vector<PretiledNode>& nodes, const ViewTransform& view);
+
+ private:
+  // What a worker needs for a tile.
+  struct alignas(64) Worker {
+    TileCounts counts;
+    std::vector<TileBins::Segment> segments;
+    std::vector<std::uint32_t> slot;  // of a triangle among the faces that are seen
+  };
+  Worker& worker();
+  void drawTile(const TileBins& bins, std::size_t t, Worker& worker);
+  static void settleTile(const OpenTile& open, const std::vector<PretiledNode>& nodes,
+                         const ViewTransform& view, Worker& worker, SettledTile& tile);
+
+  std::vector<std::unique_ptr<OpenTile>> open_;  // row by row; none where no frame drew anything yet
+  std::vector<Worker> workers_;                  // by the thread's place in the arena
+  std::vector<std::uint8_t> crossing_;           // of the batch
+  TilerStatistics crossing_counts_;              // of the batches so far
+  const SampleOffsets* offsets_ = nullptr;
+  TiledFrame frame_;
+};
 
 }  // namespace deltaz

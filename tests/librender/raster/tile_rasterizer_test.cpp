@@ -127,7 +127,7 @@ Drawn draw(const std::vector<RasterTriangle>& triangles, const SampleOffsets* of
   }
   Drawn drawn;
   drawn.buffer->clear();
-  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, {}, *drawn.buffer, drawn.counts);
+  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, 0, {}, *drawn.buffer, drawn.counts);
   return drawn;
 }
 
@@ -297,7 +297,7 @@ TEST(tile_rasterizer, pixels_beyond_the_picture_are_left_alone) {
     TileBuffer buffer;
     buffer.clear();
     TileCounts counts;
-    rasterizeTile({1, 1, kWidth, kHeight}, triangles, {}, buffer, counts);
+    rasterizeTile({1, 1, kWidth, kHeight}, triangles, 0, {}, buffer, counts);
     EXPECT_EQ(counts.tested, 6U * 3U);
     for (int i = 0; i < kTileSide; ++i) {
       for (int j = 0; j < kTileSide; ++j)

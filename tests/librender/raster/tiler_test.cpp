@@ -45,19 +45,30 @@ std::vector<PretiledNode> randomNodes(std::uint32_t seed) {
   return nodes;
 }
 
-// Work is shared out among `threads` writers in whatever order they come.
-TileBins& binned(TileBins& bins, std::vector<PretiledNode>& nodes, int threads) {
-  bins.reset(kWidth, kHeight, static_cast<std::size_t>(threads));
-  const Pretiler pretiler(smallView());
-  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
-    TileBins::Writer& writer =
-        bins.writer(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()));
-    writer.begin(static_cast<std::uint32_t>(n));
-    pretiler.process(nodes[n], static_cast<std::uint32_t>(n), writer);
-  });
-  bins.finish();
-  return bins;
+// Draws the nodes in so many batches, each shared out among `threads` writers in whatever order they come.
+const TiledFrame& drawn(Tiler& tiler, std::vector<TileBins>& bins, std::vector<PretiledNode>& nodes,
+                        int threads) {
+  const ViewTransform view = smallView();
+  const Pretiler pretiler(view);
+  tiler.begin(kWidth, kHeight);
+  for (std::size_t batch = 0; batch < bins.size(); ++batch) {
+    bins[batch].reset(kWidth, kHeight, static_cast<std::size_t>(threads));
+    const std::size_t begin = nodes.size() * batch / bins.size(),
+                      end = nodes.size() * (batch + 1) / bins.size();
+    tbb::parallel_for(begin, end, [&](std::size_t n) {
+      TileBins::Writer& writer =
+          bins[batch].writer(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()));
+      writer.begin(static_cast<std::uint32_t>(n));
+      pretiler.process(nodes[n], static_cast<std::uint32_t>(n), writer);
+    });
+    bins[batch].finish();
+    tiler.draw(bins[batch]);
+  }
+  return tiler.settle(nodes, view);
 }
+
+constexpr int kThreads[] = {1, 2, 7};
+constexpr std::size_t kBatches[] = {1, 3};
 
 // The plain definition: triangle after triangle, the nearer wins and of equals the first.
 struct Plain {
@@ -90,54 +101,60 @@ Plain drawPlainly(const std::vector<PretiledNode>& nodes) {
   return plain;
 }
 
-TEST(tiler, tiles_and_threads_change_nothing) {
+TEST(tiler, tiles_threads_batches_and_earlier_frames_change_nothing) {
+  Tiler tiler;
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-    std::vector<PretiledNode> nodes = randomNodes(seed);
+    const std::vector<PretiledNode> nodes = randomNodes(seed);
     const Plain plain = drawPlainly(nodes);
-    for (const int threads : {1, 2, 7}) {
-      tbb::task_arena(threads).execute([&] {
-        TileBins bins;
-        std::vector<PretiledNode> own = nodes;
-        const TiledFrame frame = tile(binned(bins, own, threads), own, smallView());
-        for (int i = 0; i < kHeight; ++i) {
-          for (int j = 0; j < kWidth; ++j) {
-            const SettledTile& tile =
-                frame.tiles[static_cast<std::size_t>(i / kTileSide * frame.across + j / kTileSide)];
-            const SettledTile::Seen seen = tile.at(j % kTileSide, i % kTileSide);
-            const auto pixel = static_cast<std::size_t>(i * kWidth + j);
-            ASSERT_EQ(seen.face != nullptr, plain.inverse_u[pixel] > 0);
-            if (seen.face != nullptr) {
-              ASSERT_EQ(seen.face->identity, plain.identity[pixel]);
+    for (const int threads : kThreads) {
+      for (const std::size_t batches : kBatches) {
+        tbb::task_arena(threads).execute([&] {
+          std::vector<TileBins> bins(batches);
+          std::vector<PretiledNode> own = nodes;
+          const TiledFrame& frame = drawn(tiler, bins, own, threads);
+          for (int i = 0; i < kHeight; ++i) {
+            for (int j = 0; j < kWidth; ++j) {
+              const SettledTile& tile =
+                  frame.tiles[static_cast<std::size_t>(i / kTileSide * frame.across + j / kTileSide)];
+              const SettledTile::Seen seen = tile.at(j % kTileSide, i % kTileSide);
+              const auto pixel = static_cast<std::size_t>(i * kWidth + j);
+              ASSERT_EQ(seen.face != nullptr, plain.inverse_u[pixel] > 0);
+              if (seen.face != nullptr) {
+                ASSERT_EQ(seen.face->identity, plain.identity[pixel]);
+              }
             }
           }
-        }
-      });
+        });
+      }
     }
   }
 }
 
-TEST(tiler, counts_are_the_same_for_any_number_of_threads_and_add_up) {
-  std::vector<PretiledNode> nodes = randomNodes(9);
+TEST(tiler, counts_are_the_same_for_any_number_of_threads_and_batches_and_add_up) {
+  const std::vector<PretiledNode> nodes = randomNodes(9);
   std::uint64_t faces = 0;
   for (const PretiledNode& node : nodes) faces += node.faces.size();
   std::optional<TilerStatistics> first;
-  for (const int threads : {1, 2, 7}) {
-    tbb::task_arena(threads).execute([&] {
-      TileBins bins;
-      std::vector<PretiledNode> own = nodes;
-      const TilerStatistics counts = tile(binned(bins, own, threads), own, smallView()).statistics;
-      std::uint64_t left_out = 0;
-      for (const PretiledNode& node : own) left_out += node.clipped + node.no_sample;
-      EXPECT_EQ(left_out + counts.faces_drawn + counts.no_sample, faces);
-      EXPECT_LE(counts.hidden, counts.faces_drawn);
-      if (first) {
-        EXPECT_EQ(counts.tested, first->tested);
-        EXPECT_EQ(counts.written, first->written);
-        EXPECT_EQ(counts.hidden, first->hidden);
-        EXPECT_EQ(counts.faces_drawn, first->faces_drawn);
-      }
-      first = counts;
-    });
+  Tiler tiler;
+  for (const int threads : kThreads) {
+    for (const std::size_t batches : kBatches) {
+      tbb::task_arena(threads).execute([&] {
+        std::vector<TileBins> bins(batches);
+        std::vector<PretiledNode> own = nodes;
+        const TilerStatistics counts = drawn(tiler, bins, own, threads).statistics;
+        std::uint64_t left_out = 0;
+        for (const PretiledNode& node : own) left_out += node.clipped + node.no_sample;
+        EXPECT_EQ(left_out + counts.faces_drawn + counts.no_sample, faces);
+        EXPECT_LE(counts.hidden, counts.faces_drawn);
+        if (first) {
+          EXPECT_EQ(counts.tested, first->tested);
+          EXPECT_EQ(counts.written, first->written);
+          EXPECT_EQ(counts.hidden, first->hidden);
+          EXPECT_EQ(counts.faces_drawn, first->faces_drawn);
+        }
+        first = counts;
+      });
+    }
   }
 }
 
