@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -136,14 +137,21 @@ HWY_INLINE std::uint32_t bits(hn::Mask<IntTag> mask) {
   return result;
 }
 
-// One row of pixels out of a row of blocks.
-template <typename T>
+// One row of pixels out of a row of blocks. Pictures are larger than caches and nothing reads them soon, so
+// that rows of whole cache lines go past them (`kLines`).
+template <bool kLines, typename T>
 HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
   const hn::CappedTag<T, kBlockSide> d;
   int j = 0;
   for (; j + kBlockSide <= columns; j += kBlockSide, blocks += kBlockPixels, out += kBlockSide) {
-    for (std::size_t k = 0; k < kBlockSide; k += hn::MaxLanes(d))
-      hn::StoreU(hn::Load(d, blocks + k), d, out + k);
+    for (std::size_t k = 0; k < kBlockSide; k += hn::MaxLanes(d)) {
+      const auto pixels = hn::Load(d, blocks + k);
+      if constexpr (kLines) {
+        hn::Stream(pixels, d, out + k);
+      } else {
+        hn::StoreU(pixels, d, out + k);
+      }
+    }
   }
   for (int k = 0; j + k < columns; ++k) out[k] = blocks[k];
 }
@@ -160,6 +168,7 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
   const int columns = std::min(kTileSide, tile.width - tile.j * kTileSide);
   const int rows = std::min(kTileSide, tile.height - tile.i * kTileSide);
+  const bool lines = static_cast<std::size_t>(frame.width) % (kCacheLine / sizeof(float)) == 0;
   // A row of blocks, coloured block by block, leaves as four rows of pixels.
   alignas(64) std::uint32_t color[kBlocksAcross * kBlockPixels];
   for (int block_i = 0; block_i * kBlockSide < rows; ++block_i) {
@@ -204,10 +213,16 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
       const std::size_t pixel = static_cast<std::size_t>(tile.i * kTileSide + block_i * kBlockSide + i) *
                                     static_cast<std::size_t>(frame.width) +
                                 static_cast<std::size_t>(tile.j * kTileSide);
-      copyRow(color + i * kBlockSide, columns, &frame.rgba[pixel]);
-      copyRow(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
+      if (lines) {
+        copyRow<true>(color + i * kBlockSide, columns, &frame.rgba[pixel]);
+        copyRow<true>(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
+      } else {
+        copyRow<false>(color + i * kBlockSide, columns, &frame.rgba[pixel]);
+        copyRow<false>(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
+      }
     }
   }
+  if (lines) hwy::FlushStream();
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "librender/raster/line_allocator.h"
 #include "librender/raster/tile_rasterizer.h"
 
 namespace deltaz {
@@ -19,8 +20,8 @@ namespace deltaz {
 struct ColorFrame {
   int width = 0, height = 0;
   std::uint32_t background = 0xFF000000;
-  std::vector<std::uint32_t> rgba;
-  std::vector<float> inverse_u;  // 0 where nothing is seen
+  std::vector<std::uint32_t, LineAllocator<std::uint32_t>> rgba;
+  std::vector<float, LineAllocator<float>> inverse_u;  // 0 where nothing is seen
 
   void resize(int new_width, int new_height);
 };

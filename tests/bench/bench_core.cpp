@@ -93,7 +93,7 @@ nlohmann::json benchScene(const std::string& name, int width, int height, const 
   const auto ours = [&](tbb::task_arena& arena) {
     return [&] { arena.execute([&] { counts = renderer.draw(view, grids, meshes, frame); }); };
   };
-  const auto our_picture = [&] { return frame.rgba; };
+  const auto our_picture = [&] { return std::vector<std::uint32_t>(frame.rgba.begin(), frame.rgba.end()); };
   rows.push_back({"deltaz, 1 thread", ours(one), our_picture, preparation});
   rows.push_back({fmt::format("deltaz, {} threads", kThreads), ours(two), our_picture, preparation});
 
