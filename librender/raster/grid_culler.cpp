@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "librender/raster/compaction-inl.h"
 #include "librender/raster/raster_triangle.h"
 #include "librender/raster/tile_bins.h"
 
@@ -172,9 +173,10 @@ class FaceCuller {
     const Vec tiles =
         hn::IfThenElse(exceptional, hn::Set(d_, static_cast<std::int32_t>(kExceptional)), range);
     const hn::RebindToUnsigned<Tag> du;
-    const auto kept_unsigned = hn::RebindMask(du, kept);
-    hn::CompressStore(hn::BitCast(du, face), kept_unsigned, du, out.face + out.count);
-    out.count += hn::CompressStore(hn::BitCast(du, tiles), kept_unsigned, du, out.tiles + out.count);
+    const Compaction compaction(kept);
+    compaction.store(du, hn::BitCast(du, face), out.face + out.count);
+    compaction.store(du, hn::BitCast(du, tiles), out.tiles + out.count);
+    out.count += compaction.count();
   }
 
   const Tag d_;

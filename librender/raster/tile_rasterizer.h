@@ -37,7 +37,8 @@ struct alignas(64) TileBuffer {
   std::array<std::uint32_t, kTileSide * kTileSide> triangle;
   std::array<std::uint32_t, kBlocksAcross * kBlocksAcross>
       whole;  // of a block that is one triangle's, or kNoTriangle
-  std::array<float, kBlocksAcross * kBlocksAcross> least;  // of a block's 1/U; never too great
+  // Of a block's 1/U; never too great. Blocks below and right of the last may be asked about.
+  std::array<float, kBlocksAcross * kBlocksAcross + 4 * kBlocksAcross> least;
 
   void clear();
 };

@@ -1,0 +1,60 @@
+// Moves the chosen lanes of vectors to the front, in order. Where the processor has no instruction for it,
+// the places are looked up once for all vectors that are moved alike. Included once for each instruction set.
+#if defined(DELTAZ_COMPACTION_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DELTAZ_COMPACTION_INL_H
+#undef DELTAZ_COMPACTION_INL_H
+#else
+#define DELTAZ_COMPACTION_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "librender/raster/compaction_places.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz::HWY_NAMESPACE {
+
+// Of vectors of 32-bit lanes, up to 16.
+class Compaction {
+  using FloatTag = hwy::HWY_NAMESPACE::CappedTag<float, 16>;
+  using IntTag = hwy::HWY_NAMESPACE::RebindToSigned<FloatTag>;
+  using UnsignedTag = hwy::HWY_NAMESPACE::RebindToUnsigned<FloatTag>;
+  using IntMask = hwy::HWY_NAMESPACE::Mask<IntTag>;
+  static constexpr std::size_t kLanes = hwy::HWY_NAMESPACE::MaxLanes(IntTag());
+
+ public:
+  explicit HWY_INLINE Compaction(IntMask chosen) : chosen_(chosen) {
+    namespace hn = hwy::HWY_NAMESPACE;
+    if constexpr (kLanes == 4 || kLanes == 8) {
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(IntTag(), chosen, bits);
+      const std::uint8_t* const places =
+          kLanes == 8 ? kPlacesOf8[bits[0]].data() : kPlacesOf4[bits[0] & 15].data();
+      places_ = hn::PromoteTo(IntTag(), hn::LoadU(hn::Rebind<std::uint8_t, IntTag>(), places));
+    }
+  }
+
+  std::size_t count() const { return hwy::HWY_NAMESPACE::CountTrue(IntTag(), chosen_); }
+
+  // Stores a whole vector; what lies behind the chosen ones is unspecified.
+  template <class D>
+  HWY_INLINE void store(D d, hwy::HWY_NAMESPACE::Vec<D> values, hwy::HWY_NAMESPACE::TFromD<D>* to) const {
+    namespace hn = hwy::HWY_NAMESPACE;
+    if constexpr (kLanes == 4 || kLanes == 8) {
+      hn::StoreU(hn::TableLookupLanes(values, hn::IndicesFromVec(d, places_)), d, to);
+    } else if constexpr (kLanes == 1) {
+      hn::StoreU(values, d, to);
+    } else {
+      hn::StoreU(hn::Compress(values, hn::RebindMask(d, chosen_)), d, to);
+    }
+  }
+
+ private:
+  IntMask chosen_;
+  hwy::HWY_NAMESPACE::Vec<IntTag> places_{};
+};
+
+}  // namespace deltaz::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
