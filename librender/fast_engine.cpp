@@ -45,18 +45,13 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   statistics.projected_error += statistics.transform_error;
   const TiledFrame& frame = drawer.settle();
 
+  Picture picture = makePicture(options);
   // What is seen is settled, so only the colours that are seen are read.
-  TextureStore textures;
-  if (environment.color_map != nullptr) {
-    DELTAZ_TRY_ASSIGN(textures,
-                      TextureStore::read(*environment.color_map, visibleSquares(environment, frame)));
-  }
+  TextureStore textures(environment.color_map);
+  const ResolverStatistics resolved = resolve(environment, frame, drawer.nodes(), textures, picture);
+  DELTAZ_TRY(textures.status());
   statistics.color_tiles = textures.tileCount();
   statistics.bytes_read = database.bytesRead() - bytes_before;
-  statistics.milliseconds.read += watch.lap();
-
-  Picture picture = makePicture(options);
-  const ResolverStatistics resolved = resolve(environment, frame, textures, picture);
   statistics.samples.shaded = resolved.shaded;
   statistics.depth_complexity = resolved.covered > 0 ? static_cast<double>(statistics.samples.tested) /
                                                            static_cast<double>(resolved.covered)

@@ -172,7 +172,7 @@ Status FrameDrawer::drawModels(const ModelSchedule& models) {
 }
 
 const TiledFrame& FrameDrawer::settle() {
-  const TiledFrame& frame = scratch_.tiler.settle(pretiled_, environment_.view);
+  const TiledFrame& frame = scratch_.tiler.settle();
   statistics_.triangles.drawn = frame.statistics.faces_drawn;
   statistics_.triangles.no_sample += frame.statistics.no_sample;
   statistics_.samples.tested = frame.statistics.tested;

@@ -37,6 +37,8 @@ class FrameDrawer {
   Status drawModels(const ModelSchedule& models);
   // After all drawing. Refers to the scratch.
   const TiledFrame& settle();
+  // The nodes that were drawn, by SeenFace::node.
+  const std::vector<PretiledNode>& nodes() const { return pretiled_; }
 
  private:
   // A node as the object processor made it.

@@ -12,10 +12,11 @@ double linearOfEncoded(double encoded) {
 }
 
 // Encoding by comparison instead of by std::pow: a code's lower border in linear light, and for each of
-// kSteps equal intervals of linear light the code at its beginning.
+// kSteps equal intervals of linear light, none of which holds two borders, the code at its beginning.
 struct EncodingTable {
   static constexpr int kSteps = 4096;
-  std::array<double, 257> border{};  // code c covers border[c] .. border[c + 1]
+  static constexpr double kWhite = 1 - 1.0 / 8192;  // has the code of 1
+  std::array<double, 257> border{};                 // code c covers border[c] .. border[c + 1]
   std::array<std::uint8_t, kSteps> first_code{};
 
   EncodingTable() {
@@ -30,6 +31,13 @@ struct EncodingTable {
       first_code[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(code);
     }
   }
+
+  std::uint8_t encode(double linear) const {
+    // Also of what is not a number.
+    const double kept = linear > 0 ? linear < kWhite ? linear : kWhite : 0;
+    const std::size_t code = first_code[static_cast<std::size_t>(kept * kSteps)];
+    return static_cast<std::uint8_t>(code + (kept >= border[code + 1] ? 1 : 0));
+  }
 };
 
 const EncodingTable& encodingTable() {
@@ -40,12 +48,17 @@ const EncodingTable& encodingTable() {
 }  // namespace
 
 std::uint8_t encodeSrgb(double linear) {
-  if (!(linear > 0)) return 0;
-  if (linear >= 1) return 255;
+  return encodingTable().encode(linear);
+}
+
+void encodeSrgb(const double* red, const double* green, const double* blue, std::size_t count,
+                std::uint8_t* codes) {
   const EncodingTable& table = encodingTable();
-  std::size_t code = table.first_code[static_cast<std::size_t>(linear * EncodingTable::kSteps)];
-  while (linear >= table.border[code + 1]) ++code;
-  return static_cast<std::uint8_t>(code);
+  for (std::size_t n = 0; n < count; ++n) {
+    codes[3 * n] = table.encode(red[n]);
+    codes[3 * n + 1] = table.encode(green[n]);
+    codes[3 * n + 2] = table.encode(blue[n]);
+  }
 }
 
 double decodeSrgb(std::uint8_t code) {

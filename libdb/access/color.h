@@ -2,6 +2,7 @@
 // Thread-safety: plain values and pure functions.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace deltaz {
@@ -34,6 +35,9 @@ inline double smoothStep(double low, double high, double x) {
 
 // The sRGB code (IEC 61966-2-1) nearest to a linear value, in code space; values outside 0 .. 1 are clamped.
 std::uint8_t encodeSrgb(double linear);
+// The same of `count` colours; `codes` become red, green, blue of each.
+void encodeSrgb(const double* red, const double* green, const double* blue, std::size_t count,
+                std::uint8_t* codes);
 // The linear value of an sRGB code.
 double decodeSrgb(std::uint8_t code);
 // The same, from a table.

@@ -7,13 +7,6 @@
 
 namespace deltaz {
 
-SettledTile::Seen SettledTile::at(int j, int i) const {
-  if (owner_.empty()) return {};
-  const std::uint32_t owner = owner_[tileIndex(j, i)];
-  if (owner == kNoTriangle) return {};
-  return {&faces_[owner].planes, faces_[owner].grid};
-}
-
 void Tiler::begin(int width, int height, const SampleOffsets* offsets) {
   offsets_ = offsets;
   frame_.width = width;
@@ -64,12 +57,11 @@ void Tiler::drawTile(const TileBins& bins, std::size_t t, Worker& worker) {
       open.triangles, before, crossing_, open.buffer, worker.counts);
 }
 
-const TiledFrame& Tiler::settle(const std::vector<PretiledNode>& nodes, const ViewTransform& view) {
+const TiledFrame& Tiler::settle() {
   tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) {
     frame_.tiles[t].faces_.clear();
     frame_.tiles[t].owner_.clear();
-    if (open_[t] && !open_[t]->triangles.empty())
-      settleTile(*open_[t], nodes, view, worker(), frame_.tiles[t]);
+    if (open_[t] && !open_[t]->triangles.empty()) settleTile(*open_[t], worker(), frame_.tiles[t]);
   });
   frame_.statistics = crossing_counts_;
   for (const Worker& worker : workers_) {
@@ -82,10 +74,9 @@ const TiledFrame& Tiler::settle(const std::vector<PretiledNode>& nodes, const Vi
   return frame_;
 }
 
-void Tiler::settleTile(const OpenTile& open, const std::vector<PretiledNode>& nodes,
-                       const ViewTransform& view, Worker& worker, SettledTile& tile) {
+void Tiler::settleTile(const OpenTile& open, Worker& worker, SettledTile& tile) {
   const TileBuffer& buffer = open.buffer;
-  // Planes are made when a face is first met.
+  // Faces are named in the order in which they are met.
   worker.slot.assign(open.triangles.size(), kNoTriangle);
   tile.owner_.assign(buffer.inverse_u.size(), kNoTriangle);
   for (std::size_t pixel = 0; pixel < tile.owner_.size(); ++pixel) {
@@ -96,8 +87,7 @@ void Tiler::settleTile(const OpenTile& open, const std::vector<PretiledNode>& no
     if (slot == kNoTriangle) {
       slot = static_cast<std::uint32_t>(tile.faces_.size());
       const RasterTriangle& triangle = *open.triangles[owner];
-      const PretiledNode& node = nodes[triangle.node];
-      tile.faces_.push_back({facePlanes(view, node, triangle.face), node.grid});
+      tile.faces_.push_back({triangle.node, triangle.face});
     }
     tile.owner_[pixel] = slot;
   }

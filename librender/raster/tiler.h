@@ -1,5 +1,4 @@
-// The tiler (report 4.2): binned triangles -> for every pixel the nearest of them, tile by tile, and the
-// planes of the faces that are seen.
+// The tiler (report 4.2): binned triangles -> for every pixel the nearest of them, tile by tile.
 //
 // A frame is drawn in batches, front to back. What is there after one tells which nodes of the next cannot be
 // seen (isHidden), so that they need not be read.
@@ -13,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "librender/raster/pretiler.h"
+#include "librender/raster/face_lanes.h"
 #include "librender/raster/tile_bins.h"
 #include "librender/raster/tile_rasterizer.h"
 
@@ -22,23 +21,15 @@ namespace deltaz {
 // A tile whose visibility is settled.
 class SettledTile {
  public:
-  // What is seen at a pixel of the tile.
-  struct Seen {
-    const FacePlanes* face = nullptr;  // nullptr: nothing
-    std::uint16_t grid = 0;            // whose colours it shows
-  };
-  // Pixel (j, i) of the tile, counted from its first.
-  Seen at(int j, int i) const;
+  // What is seen at pixel (j, i) of the tile, counted from its first: index into faces, or kNoTriangle.
+  std::uint32_t at(int j, int i) const { return owner_.empty() ? kNoTriangle : owner_[tileIndex(j, i)]; }
+  // The faces that are seen.
+  const std::vector<SeenFace>& faces() const { return faces_; }
 
  private:
   friend class Tiler;
-  struct Face {
-    FacePlanes planes;
-    std::uint16_t grid = 0;
-  };
-  std::vector<Face> faces_;  // that are seen
-  std::vector<std::uint32_t>
-      owner_;  // of each pixel in faces_, in the order of TileBuffer; kNoTriangle for none; empty if none is
+  std::vector<SeenFace> faces_;
+  std::vector<std::uint32_t> owner_;  // of each pixel, in the order of TileBuffer; empty if nothing is seen
 };
 
 struct TilerStatistics {
@@ -66,8 +57,8 @@ class Tiler {
   void begin(int width, int height, const SampleOffsets* offsets = nullptr);
   // Draws what lies in the bins, which must stay as they are until the frame is settled.
   void draw(const TileBins& bins);
-  // `nodes` are those whose faces were drawn, by RasterTriangle::node. Valid until the next frame.
-  const TiledFrame& settle(const std::vector<PretiledNode>& nodes, const ViewTransform& view);
+  // Valid until the next frame.
+  const TiledFrame& settle();
 
  private:
   // What a worker needs for a tile.
@@ -78,8 +69,7 @@ class Tiler {
   };
   Worker& worker();
   void drawTile(const TileBins& bins, std::size_t t, Worker& worker);
-  static void settleTile(const OpenTile& open, const std::vector<PretiledNode>& nodes,
-                         const ViewTransform& view, Worker& worker, SettledTile& tile);
+  static void settleTile(const OpenTile& open, Worker& worker, SettledTile& tile);
 
   std::vector<std::unique_ptr<OpenTile>> open_;  // row by row; none where no frame drew anything yet
   std::vector<Worker> workers_;                  // by the thread's place in the arena

@@ -5,6 +5,15 @@
 
 #include "librender/scene/exponential.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "librender/scene/atmosphere.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "librender/scene/exponential-inl.h"
+
+#ifndef DELTAZ_ATMOSPHERE_CONSTANTS
+#define DELTAZ_ATMOSPHERE_CONSTANTS
 namespace deltaz {
 namespace {
 
@@ -16,69 +25,191 @@ constexpr double kAerosol = 2.0e-5;       // 1/m at height 0
 // Air has a floor, in metres: no dry land lies lower, but facets of a whole globe sag by kilometres, within a
 // pixel of the ground they stand for.
 constexpr double kLowestGround = -500;
+// For nearly equal heights the quotient of differences loses its digits; the mean of both ends differs from
+// it by rise^2 / 12.
+constexpr double kLevelRise = 1e-4;  // in scale heights
+
+}  // namespace
+}  // namespace deltaz
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+
+struct Vectors {
+  V x, y, z;
+};
+
+V set(double value) {
+  const D d;
+  return hn::Set(d, value);
+}
+Vectors loadRays(const RayLists& rays, std::size_t k) {
+  const D d;
+  return {hn::LoadU(d, rays.x + k), hn::LoadU(d, rays.y + k), hn::LoadU(d, rays.z + k)};
+}
+V dotOf(const Vectors& a, const Vectors& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+// Atmosphere::sky, operation by operation.
+void skyColors(const AtmosphereTerms& terms, const RayLists& rays, const ColorLists& colors) {
+  const D d;
+  const V zero = hn::Zero(d), one = set(1.0);
+  const Vectors up{set(terms.up.x), set(terms.up.y), set(terms.up.z)};
+  for (std::size_t k = 0; k < rays.count; k += hn::Lanes(d)) {
+    const Vectors ray = loadRays(rays, k);
+    const V elevation =
+        hn::Sub(hn::Div(dotOf(ray, up), hn::Sqrt(dotOf(ray, ray))), set(terms.sine_of_horizon));
+    const V above =
+        hn::Div(hn::Mul(elevation, set(1 + terms.gradient)), hn::Add(elevation, set(terms.gradient)));
+    const V t = hn::IfThenElse(hn::Le(elevation, zero), zero, above), s = hn::Sub(one, t);
+    const auto store = [&](double haze, double zenith, double* to) {
+      hn::StoreU(hn::Add(hn::Mul(set(haze), s), hn::Mul(set(zenith), t)), d, to + k);
+    };
+    store(terms.haze_color.red, terms.zenith_color.red, colors.red);
+    store(terms.haze_color.green, terms.zenith_color.green, colors.green);
+    store(terms.haze_color.blue, terms.zenith_color.blue, colors.blue);
+  }
+}
+
+// meanDensity from the eye on; `height_scale` in metres.
+V meanDensities(double height1, double density1, V height2, V density2, double height_scale) {
+  const V rise = hn::Div(hn::Sub(height2, set(height1)), set(height_scale));
+  const V level = hn::Div(hn::Add(set(density1), density2), set(2.0));
+  const V quotient = hn::Div(hn::Sub(set(density1), density2), rise);
+  return hn::IfThenElse(hn::Lt(hn::Abs(rise), set(kLevelRise)), level, quotient);
+}
+
+// Atmosphere::throughHaze, operation by operation.
+void hazeColors(const AtmosphereTerms& terms, const RayLists& rays, const double* depths,
+                const ColorLists& colors) {
+  const D d;
+  const double eye_density2 = terms.eye_density * terms.eye_density;
+  for (std::size_t k = 0; k < rays.count; k += hn::Lanes(d)) {
+    const Vectors ray = loadRays(rays, k);
+    const V u = hn::LoadU(d, depths + k);
+    const V distance = hn::Mul(hn::Sqrt(dotOf(ray, ray)), u);
+    const Vectors p{hn::Add(set(terms.eye.x), hn::Mul(ray.x, u)),
+                    hn::Add(set(terms.eye.y), hn::Mul(ray.y, u)),
+                    hn::Add(set(terms.eye.z), hn::Mul(ray.z, u))};
+    const V x2 = hn::Mul(p.x, p.x), y2 = hn::Mul(p.y, p.y), z2 = hn::Mul(p.z, p.z);
+    const V across2 = hn::Add(x2, y2);
+    const V q =
+        hn::Add(hn::Mul(across2, set(terms.inverse_a_squared)), hn::Mul(z2, set(terms.inverse_b_squared)));
+    const V above =
+        hn::Mul(hn::Sqrt(hn::Add(across2, z2)), hn::Sub(set(1.0), hn::Div(set(1.0), hn::Sqrt(q))));
+    const V height = hn::Max(set(kLowestGround), above);
+    const V density = exponentials(d, hn::Div(hn::Neg(height), set(kMolecularHeight)));
+    const V density2 = hn::Mul(density, density);
+    const V molecular =
+        hn::Mul(hn::Mul(set(kMolecularRed), distance),
+                meanDensities(terms.eye_height, terms.eye_density, height, density, kMolecularHeight));
+    const V aerosol = hn::Mul(hn::Mul(set(kAerosol), distance),
+                              meanDensities(terms.eye_height, eye_density2 * eye_density2, height,
+                                            hn::Mul(density2, density2), kAerosolHeight));
+    const V grey = exponentials(d, hn::Neg(aerosol));
+    const V red = exponentials(d, hn::Neg(molecular)), green = hn::Mul(red, red),
+            blue = hn::Mul(green, green);
+    const auto store = [&](double haze, V left, double* color) {
+      const V change = hn::Mul(hn::Sub(hn::LoadU(d, color + k), set(haze)), hn::Mul(grey, left));
+      hn::StoreU(hn::Add(set(haze), change), d, color + k);
+    };
+    store(terms.haze_color.red, red, colors.red);
+    store(terms.haze_color.green, green, colors.green);
+    store(terms.haze_color.blue, blue, colors.blue);
+  }
+}
+
+}  // namespace
+}  // namespace deltaz::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace deltaz {
+namespace {
+
+HWY_EXPORT(skyColors);
+HWY_EXPORT(hazeColors);
+
 constexpr LinearColor kHaze{0.60, 0.70, 0.82};
 constexpr LinearColor kZenith{0.060, 0.170, 0.480};
 
 // Mean density of a layer between two heights of densities d1, d2, where d = exp(-h / scale).
 double meanDensity(double h1, double d1, double h2, double d2, double scale) {
   const double rise = (h2 - h1) / scale;
-  // For nearly equal heights the quotient loses its digits; the mean of both ends differs from it by rise^2
-  // / 12.
-  if (std::abs(rise) < 1e-4) return (d1 + d2) / 2;
+  if (std::abs(rise) < kLevelRise) return (d1 + d2) / 2;
   return (d1 - d2) / rise;
 }
 
 }  // namespace
 
-Atmosphere::Atmosphere(const EllipsoidShape& ellipsoid, const ViewTransform& view, const Vector3& to_sun)
-    : eye_(view.eye) {
+Atmosphere::Atmosphere(const EllipsoidShape& ellipsoid, const ViewTransform& view, const Vector3& to_sun) {
+  terms_.eye = view.eye;
   const double a = ellipsoid.semi_major_axis;
   const double flattening = ellipsoid.inverse_flattening != 0 ? 1 / ellipsoid.inverse_flattening : 0;
   const double b = a * (1 - flattening);
-  inverse_a_squared_ = 1 / (a * a);
-  inverse_b_squared_ = 1 / (b * b);
+  terms_.inverse_a_squared = 1 / (a * a);
+  terms_.inverse_b_squared = 1 / (b * b);
   const GeodeticPoint eye = toGeodetic(ellipsoid, view.eye);
-  up_ = upVector(rowConstants(ellipsoid, eye.latitude), columnConstants(eye.longitude));
-  eye_height_ = heightOf(eye_);
-  eye_density_ = exponential(-eye_height_ / kMolecularHeight);
-  const double ratio = a / (a + std::max(eye_height_, 0.0));
-  sine_of_horizon_ = -std::sqrt(1 - ratio * ratio);
+  terms_.up = upVector(rowConstants(ellipsoid, eye.latitude), columnConstants(eye.longitude));
+  terms_.eye_height = heightOf(terms_.eye);
+  terms_.eye_density = exponential(-terms_.eye_height / kMolecularHeight);
+  const double ratio = a / (a + std::max(terms_.eye_height, 0.0));
+  terms_.sine_of_horizon = -std::sqrt(1 - ratio * ratio);
 
-  daylight_ = 0.03 + 0.97 * smoothStep(-0.10, 0.25, dot(to_sun, up_));
-  haze_color_ = kHaze * daylight_;
+  daylight_ = 0.03 + 0.97 * smoothStep(-0.10, 0.25, dot(to_sun, terms_.up));
+  terms_.haze_color = kHaze * daylight_;
   // From high up the sky is dark and its bright band thin.
-  const double air = std::min(1.0, eye_density_);
-  zenith_color_ = kZenith * (daylight_ * (0.02 + 0.98 * air));
-  gradient_ = 0.02 + 0.23 * air;
+  const double air = std::min(1.0, terms_.eye_density);
+  terms_.zenith_color = kZenith * (daylight_ * (0.02 + 0.98 * air));
+  terms_.gradient = 0.02 + 0.23 * air;
 }
 
 double Atmosphere::heightOf(const Vector3& p) const {
-  const double q = (p.x * p.x + p.y * p.y) * inverse_a_squared_ + p.z * p.z * inverse_b_squared_;
+  const double q = (p.x * p.x + p.y * p.y) * terms_.inverse_a_squared + p.z * p.z * terms_.inverse_b_squared;
   // The point scaled to the ellipsoid along its radius is p / sqrt(q).
   return length(p) * (1 - 1 / std::sqrt(q));
 }
 
 LinearColor Atmosphere::sky(const Vector3& ray) const {
-  const double elevation = dot(ray, up_) / length(ray) - sine_of_horizon_;
-  if (elevation <= 0) return haze_color_;
-  return mix(haze_color_, zenith_color_, elevation * (1 + gradient_) / (elevation + gradient_));
+  const double elevation = dot(ray, terms_.up) / length(ray) - terms_.sine_of_horizon;
+  if (elevation <= 0) return terms_.haze_color;
+  return mix(terms_.haze_color, terms_.zenith_color,
+             elevation * (1 + terms_.gradient) / (elevation + terms_.gradient));
 }
 
 LinearColor Atmosphere::throughHaze(const LinearColor& color, const Vector3& ray, double u) const {
   const double distance = length(ray) * u;
-  const double height = std::max(kLowestGround, heightOf(eye_ + ray * u));
+  const double height = std::max(kLowestGround, heightOf(terms_.eye + ray * u));
   const double density = exponential(-height / kMolecularHeight);
-  const double density2 = density * density, eye_density2 = eye_density_ * eye_density_;
+  const double density2 = density * density, eye_density2 = terms_.eye_density * terms_.eye_density;
   const double molecular =
-      kMolecularRed * distance * meanDensity(eye_height_, eye_density_, height, density, kMolecularHeight);
-  const double aerosol =
-      kAerosol * distance *
-      meanDensity(eye_height_, eye_density2 * eye_density2, height, density2 * density2, kAerosolHeight);
+      kMolecularRed * distance *
+      meanDensity(terms_.eye_height, terms_.eye_density, height, density, kMolecularHeight);
+  const double aerosol = kAerosol * distance *
+                         meanDensity(terms_.eye_height, eye_density2 * eye_density2, height,
+                                     density2 * density2, kAerosolHeight);
   const double grey = exponential(-aerosol);
   const double red = exponential(-molecular), green = red * red, blue = green * green;
-  return {haze_color_.red + (color.red - haze_color_.red) * (grey * red),
-          haze_color_.green + (color.green - haze_color_.green) * (grey * green),
-          haze_color_.blue + (color.blue - haze_color_.blue) * (grey * blue)};
+  return {terms_.haze_color.red + (color.red - terms_.haze_color.red) * (grey * red),
+          terms_.haze_color.green + (color.green - terms_.haze_color.green) * (grey * green),
+          terms_.haze_color.blue + (color.blue - terms_.haze_color.blue) * (grey * blue)};
+}
+
+void Atmosphere::skies(const RayLists& rays, const ColorLists& colors) const {
+  HWY_DYNAMIC_DISPATCH(skyColors)(terms_, rays, colors);
+}
+
+void Atmosphere::throughHaze(const RayLists& rays, const double* u, const ColorLists& colors) const {
+  HWY_DYNAMIC_DISPATCH(hazeColors)(terms_, rays, u, colors);
 }
 
 }  // namespace deltaz
+#endif

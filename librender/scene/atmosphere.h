@@ -10,9 +10,22 @@
 
 #include "formats/area.h"
 #include "libdb/access/color.h"
+#include "libdb/access/synthetic_color.h"
 #include "librender/scene/camera.h"
+#include "librender/scene/ray_lists.h"
 
 namespace deltaz {
+
+// What sky and haze are computed from.
+struct AtmosphereTerms {
+  Vector3 eye, up;
+  double inverse_a_squared = 0, inverse_b_squared = 0;
+  double eye_height = 0;
+  double eye_density = 0;      // exp(-height / 8 km)
+  double sine_of_horizon = 0;  // of the elevation angle, negative: below level
+  double gradient = 0.25;      // width of the bright band over the horizon
+  LinearColor haze_color, zenith_color;
+};
 
 class Atmosphere {
  public:
@@ -23,22 +36,20 @@ class Atmosphere {
   LinearColor sky(const Vector3& ray) const;
   // What is left at the eye of `color` at eye + ray * u.
   LinearColor throughHaze(const LinearColor& color, const Vector3& ray, double u) const;
-  const LinearColor& hazeColor() const { return haze_color_; }
+  const LinearColor& hazeColor() const { return terms_.haze_color; }
   // Brightness of daylight, 0 .. 1.
   double daylight() const { return daylight_; }
+
+  // The same of many rays; `colors` are those at `u`, and what is left of them.
+  void skies(const RayLists& rays, const ColorLists& colors) const;
+  void throughHaze(const RayLists& rays, const double* u, const ColorLists& colors) const;
 
  private:
   // Height above the ellipsoid, metres, to first order in the flattening.
   double heightOf(const Vector3& position) const;
 
-  Vector3 eye_, up_;
-  double inverse_a_squared_ = 0, inverse_b_squared_ = 0;
-  double eye_height_ = 0;
-  double eye_density_ = 0;      // exp(-height / 8 km)
-  double sine_of_horizon_ = 0;  // of the elevation angle, negative: below level
-  double gradient_ = 0.25;      // width of the bright band over the horizon
+  AtmosphereTerms terms_;
   double daylight_ = 1;
-  LinearColor haze_color_, zenith_color_;
 };
 
 }  // namespace deltaz

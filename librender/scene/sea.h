@@ -7,9 +7,11 @@
 
 #include "formats/area.h"
 #include "libdb/access/color.h"
+#include "libdb/access/synthetic_color.h"
 #include "librender/scene/atmosphere.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/illumination.h"
+#include "librender/scene/ray_lists.h"
 
 namespace deltaz {
 
@@ -18,6 +20,16 @@ struct SeaAxes {
   double a = 0, b = 0;
 };
 SeaAxes seaAxes(const AreaHeader& area);
+
+// What its depth and colour are computed from.
+struct SeaTerms {
+  Vector3 eye;
+  Vector3 scaled_eye;  // divided by the semi-axes
+  double inverse_a = 0, inverse_b = 0;
+  double outside = -1;  // |scaled eye|^2 - 1
+  Light light;
+  LinearColor deep, reflected;
+};
 
 class Sea {
  public:
@@ -29,13 +41,12 @@ class Sea {
   // Colour of the sea met at depth `u`, before haze.
   LinearColor color(const Vector3& ray, double u) const;
 
+  // The same of many rays. The colour where the sea is not met means nothing.
+  void depths(const RayLists& rays, double* u) const;
+  void colors(const RayLists& rays, const double* u, const ColorLists& colors) const;
+
  private:
-  Vector3 eye_;
-  Vector3 scaled_eye_;  // divided by the semi-axes
-  double inverse_a_ = 0, inverse_b_ = 0;
-  double outside_ = -1;  // |scaled eye|^2 - 1
-  Light light_;
-  LinearColor deep_, reflected_;
+  SeaTerms terms_;
 };
 
 }  // namespace deltaz

@@ -1,8 +1,12 @@
 #include "librender/scene/texture_store.h"
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <tbb/parallel_for.h>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "libdb/access/color.h"
 
 namespace deltaz {
 namespace {
@@ -11,69 +15,119 @@ TextureSquare squareOf(const ColorNode& node) {
   return {node.grid, node.level, node.x, node.y};
 }
 
-// The first error of a list of results, in its order.
-template <typename T>
-Status firstError(const std::vector<std::optional<Result<T>>>& results) {
-  for (const auto& result : results) {
-    if (!result->ok()) return result->error();
+// Entries that are made once, by whoever asks first; others wait for that one alone.
+template <typename Value>
+class MadeOnce {
+ public:
+  template <typename Make>
+  const Value& at(const TextureSquare& square, const Make& make) {
+    Entry* entry = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      std::unique_ptr<Entry>& place = entries_[square];
+      if (!place) place = std::make_unique<Entry>();
+      entry = place.get();
+    }
+    std::call_once(entry->once, [&] { entry->value = make(); });
+    return entry->value;
   }
-  return Success{};
-}
+
+  // In the order of the squares.
+  template <typename Visit>
+  void forEach(const Visit& visit) const {
+    for (const auto& [square, entry] : entries_) visit(entry->value);
+  }
+
+ private:
+  struct Entry {
+    std::once_flag once;
+    Value value;
+  };
+  std::mutex mutex_;
+  std::map<TextureSquare, std::unique_ptr<Entry>> entries_;
+};
+
+struct Served {
+  const TextureTile* tile = nullptr;
+  Status status = Success{};
+};
+struct Read {
+  TextureTile tile;
+  Status status = Success{};
+};
 
 }  // namespace
 
-Result<TextureStore> TextureStore::read(const ColorMap& map, std::vector<TextureSquare> squares) {
-  TextureStore store;
-  std::sort(squares.begin(), squares.end());
-  squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
-  store.squares_ = std::move(squares);
-
-  std::vector<std::optional<Result<std::optional<ColorNode>>>> found(store.squares_.size());
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t n) {
-    const TextureSquare& square = store.squares_[n];
-    const double cells = colorNodeCells(map.leafCells(square.grid), square.level);
-    found[n].emplace(
-        map.nodeAt(square.grid, (square.x + 0.5) * cells, (square.y + 0.5) * cells, square.level));
-  });
-  DELTAZ_TRY(firstError(found));
-
-  // A coarse node may serve many squares.
-  std::vector<ColorNode> nodes;
-  for (const auto& node : found) {
-    if (node->value()) nodes.push_back(*node->value());
+void makeLinear(TextureTile& tile) {
+  static const std::array<float, 256> cover = [] {
+    std::array<float, 256> table{};
+    for (std::size_t code = 0; code < table.size(); ++code)
+      table[code] = static_cast<float>(static_cast<double>(code) / 255.0);
+    return table;
+  }();
+  static const std::array<float, 256> light = [] {
+    std::array<float, 256> table{};
+    for (std::size_t code = 0; code < table.size(); ++code)
+      table[code] = static_cast<float>(decodeSrgb(static_cast<std::uint8_t>(code)));
+    return table;
+  }();
+  tile.linear.resize(tile.texels.size());
+  for (std::size_t k = 0; k + 3 < tile.texels.size(); k += 4) {
+    const float of_texel = cover[tile.texels[k + 3]];
+    for (std::size_t c = 0; c < 3; ++c) tile.linear[k + c] = light[tile.texels[k + c]] * of_texel;
+    tile.linear[k + 3] = of_texel;
   }
-  const auto before = [](const ColorNode& a, const ColorNode& b) { return squareOf(a) < squareOf(b); };
-  const auto same = [](const ColorNode& a, const ColorNode& b) { return squareOf(a) == squareOf(b); };
-  std::sort(nodes.begin(), nodes.end(), before);
-  nodes.erase(std::unique(nodes.begin(), nodes.end(), same), nodes.end());
-  for (const auto& node : found) {
-    if (!node->value()) {
-      store.tile_of_.push_back(kNoTile);
-      continue;
-    }
-    const auto at = std::lower_bound(nodes.begin(), nodes.end(), *node->value(), before);
-    store.tile_of_.push_back(static_cast<std::uint32_t>(at - nodes.begin()));
-  }
-
-  std::vector<std::optional<Result<std::vector<std::uint8_t>>>> texels(nodes.size());
-  tbb::parallel_for(std::size_t{0}, nodes.size(),
-                    [&](std::size_t n) { texels[n].emplace(map.tile(nodes[n])); });
-  DELTAZ_TRY(firstError(texels));
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    store.tiles_.push_back({squareOf(nodes[n]), map.leafCells(nodes[n].grid), std::move(*texels[n]).value()});
-  return store;
 }
 
-const TextureTile* TextureStore::find(const TextureSquare& square) const {
-  const auto at = std::lower_bound(squares_.begin(), squares_.end(), square);
-  if (at == squares_.end() || *at != square) return nullptr;
-  const std::uint32_t tile = tile_of_[static_cast<std::size_t>(at - squares_.begin())];
-  return tile == kNoTile ? nullptr : &tiles_[tile];
+struct TextureStore::Contents {
+  MadeOnce<Served> squares;
+  MadeOnce<Read> nodes;  // by their own squares: a coarse one may serve many
+};
+
+TextureStore::TextureStore(const ColorMap* map) : map_(map), contents_(std::make_unique<Contents>()) {}
+TextureStore::~TextureStore() = default;
+TextureStore::TextureStore(TextureStore&&) noexcept = default;
+TextureStore& TextureStore::operator=(TextureStore&&) noexcept = default;
+
+const TextureTile* TextureStore::find(const TextureSquare& square) {
+  if (map_ == nullptr) return nullptr;
+  const Served& served = contents_->squares.at(square, [&]() -> Served {
+    const double cells = colorNodeCells(map_->leafCells(square.grid), square.level);
+    const Result<std::optional<ColorNode>> found =
+        map_->nodeAt(square.grid, (square.x + 0.5) * cells, (square.y + 0.5) * cells, square.level);
+    if (!found.ok()) return {nullptr, found.error()};
+    if (!found.value()) return {};
+    const ColorNode& node = *found.value();
+    const Read& read = contents_->nodes.at(squareOf(node), [&]() -> Read {
+      Result<std::vector<std::uint8_t>> texels = map_->tile(node);
+      if (!texels.ok()) return {{}, texels.error()};
+      TextureTile tile{squareOf(node), map_->leafCells(node.grid), std::move(texels).value(), {}};
+      makeLinear(tile);
+      return {std::move(tile), Success{}};
+    });
+    if (!read.status.ok()) return {nullptr, read.status};
+    return {&read.tile, Success{}};
+  });
+  return served.tile;
+}
+
+Status TextureStore::status() const {
+  Status first = Success{};
+  contents_->squares.forEach([&](const Served& served) {
+    if (first.ok()) first = served.status;
+  });
+  return first;
+}
+
+std::size_t TextureStore::tileCount() const {
+  std::size_t count = 0;
+  contents_->nodes.forEach([&](const Read& read) { count += read.status.ok() ? 1 : 0; });
+  return count;
 }
 
 const TextureTile* TextureReader::find(const TextureSquare& square) {
   std::optional<Last>& last = last_[square.level & 1];
-  if (!last || last->square != square) last = Last{square, store_.find(square)};
+  if (!last || last->square != square) last = Last{square, store_->find(square)};
   return last->tile;
 }
 

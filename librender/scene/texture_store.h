@@ -1,14 +1,17 @@
-// The memory manager of colour (report 5.6): the tiles of a colour map that a frame needs, read at once.
+// The memory manager of colour (report 5.6): the tiles of a colour map that a frame needs, each read when it
+// is first asked for, and once.
 //
 // What a pixel asks for is a square: the place of a node of some level, whether or not the map has that node.
 // Where it has none, the finest coarser node that holds the place serves; all places of a square share it.
 //
-// Thread-safety: const members from any thread. A TextureReader belongs to one thread.
+// Thread-safety: find from any thread; the others when no thread finds. A TextureReader belongs to one
+// thread.
 #pragma once
 
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -28,39 +31,48 @@ struct TextureTile {
   TextureSquare square;              // the node's own
   int leaf_cells = 0;                // of its grid
   std::vector<std::uint8_t> texels;  // as decodeColorTile gives them
+  // The same ready to be filtered: red, green, blue in linear light, times cover, and cover, 0 .. 1.
+  std::vector<float> linear;
 };
+
+// Fills `linear` from `texels`.
+void makeLinear(TextureTile& tile);
 
 class TextureStore {
  public:
-  // Without tiles: every square is empty.
-  TextureStore() = default;
-  // Reads what serves `squares`, which may stand in any order and more than once. Runs on the threads of the
-  // caller's TBB arena. Errors: whatever reading reports; of several, the first in the order of the squares.
-  static Result<TextureStore> read(const ColorMap& map, std::vector<TextureSquare> squares);
+  // Without a map every square is empty. The map must live as long.
+  explicit TextureStore(const ColorMap* map = nullptr);
+  ~TextureStore();
+  TextureStore(TextureStore&&) noexcept;
+  TextureStore& operator=(TextureStore&&) noexcept;
 
-  // The tile that serves a square, nullptr where the map has no texels. Pre: the square was asked for.
-  const TextureTile* find(const TextureSquare& square) const;
-  std::size_t tileCount() const { return tiles_.size(); }
+  const ColorMap* map() const { return map_; }
+  // The tile that serves a square, nullptr where the map has no texels or could not be read. It stays where
+  // it is.
+  const TextureTile* find(const TextureSquare& square);
+  // What went wrong in finding: of several errors the first in the order of the squares.
+  Status status() const;
+  std::size_t tileCount() const;
 
  private:
-  static constexpr std::uint32_t kNoTile = 0xffffffff;
-  std::vector<TextureSquare> squares_;  // sorted
-  std::vector<std::uint32_t> tile_of_;  // by square: index in tiles_, or kNoTile
-  std::vector<TextureTile> tiles_;
+  struct Contents;
+  const ColorMap* map_;
+  std::unique_ptr<Contents> contents_;
 };
 
 // Looks tiles up in a store; neighbouring pixels mostly want the tiles of the pixel before.
 class TextureReader {
  public:
-  explicit TextureReader(const TextureStore& store) : store_(store) {}
+  explicit TextureReader(TextureStore& store) : store_(&store) {}
   const TextureTile* find(const TextureSquare& square);
+  TextureStore& store() const { return *store_; }
 
  private:
   struct Last {
     TextureSquare square;
     const TextureTile* tile = nullptr;
   };
-  const TextureStore& store_;
+  TextureStore* store_;
   std::array<std::optional<Last>, 2> last_;  // a pixel asks for two levels, one of them even
 };
 

@@ -64,7 +64,7 @@ const TiledFrame& drawn(Tiler& tiler, std::vector<TileBins>& bins, std::vector<P
     bins[batch].finish();
     tiler.draw(bins[batch]);
   }
-  return tiler.settle(nodes, view);
+  return tiler.settle();
 }
 
 constexpr int kThreads[] = {1, 2, 7};
@@ -116,11 +116,12 @@ TEST(tiler, tiles_threads_batches_and_earlier_frames_change_nothing) {
             for (int j = 0; j < kWidth; ++j) {
               const SettledTile& tile =
                   frame.tiles[static_cast<std::size_t>(i / kTileSide * frame.across + j / kTileSide)];
-              const SettledTile::Seen seen = tile.at(j % kTileSide, i % kTileSide);
+              const std::uint32_t seen = tile.at(j % kTileSide, i % kTileSide);
               const auto pixel = static_cast<std::size_t>(i * kWidth + j);
-              ASSERT_EQ(seen.face != nullptr, plain.inverse_u[pixel] > 0);
-              if (seen.face != nullptr) {
-                ASSERT_EQ(seen.face->identity, plain.identity[pixel]);
+              ASSERT_EQ(seen != kNoTriangle, plain.inverse_u[pixel] > 0);
+              if (seen != kNoTriangle) {
+                const SeenFace& face = tile.faces()[seen];
+                ASSERT_EQ(facePlanes(smallView(), own[face.node], face.face).identity, plain.identity[pixel]);
               }
             }
           }
