@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "librender/raster/block_lanes.h"
+#include "librender/raster/load_fours-inl.h"
 
 #ifndef DELTAZ_GOURAUD_SHADER_ONCE
 #define DELTAZ_GOURAUD_SHADER_ONCE
@@ -40,23 +41,21 @@ constexpr std::size_t kVectors = kBlockPixels / kLanes;
 using DoubleTag = hn::CappedTag<double, 8>;
 using HalfFloatTag = hn::Rebind<float, DoubleTag>;
 
-// Sixteen triangles at once; products of coordinates are exact in double.
-HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count, ShadingPlanes* planes) {
-  alignas(64) RasterVertex vertex[3][kShadeBatch];
-  for (std::size_t t = 0; t < kShadeBatch; ++t) {
-    const RasterTriangle& triangle = *triangles[std::min(t, count - 1)];
-    for (std::size_t k = 0; k < 3; ++k) vertex[k][t] = triangle.vertex[k];
-  }
+// Up to sixteen triangles at once, by their numbers; products of coordinates are exact in double.
+HWY_INLINE void setUp(const RasterTriangle* const* triangles, const std::uint32_t* numbers, std::size_t count,
+                      ShadingPlanes* planes) {
   alignas(64) float x[3][kShadeBatch], y[3][kShadeBatch], w[3][kShadeBatch], color[3][3][kShadeBatch];
   alignas(64) float gradient[4][kShadeBatch];
   for (std::size_t t = 0; t < kShadeBatch; t += kLanes) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Floats vx, vy, vw, payload;
-      hn::LoadInterleaved4(kFloat, &vertex[k][t].x, vx, vy, vw, payload);
-      hn::Store(vx, kFloat, x[k] + t);
-      hn::Store(vy, kFloat, y[k] + t);
-      hn::Store(vw, kFloat, w[k] + t);
-      const Ints rgba = hn::BitCast(kInt, payload), byte = hn::Set(kInt, 0xFF);
+      Floats record[4];
+      loadFours(
+          kFloat, [&](std::size_t n) { return &triangles[numbers[std::min(t + n, count - 1)]]->vertex[k].x; },
+          record);
+      hn::Store(record[0], kFloat, x[k] + t);
+      hn::Store(record[1], kFloat, y[k] + t);
+      hn::Store(record[2], kFloat, w[k] + t);
+      const Ints rgba = hn::BitCast(kInt, record[3]), byte = hn::Set(kInt, 0xFF);
       hn::Store(hn::ConvertTo(kFloat, hn::And(rgba, byte)), kFloat, color[k][0] + t);
       hn::Store(hn::ConvertTo(kFloat, hn::And(hn::ShiftRight<8>(rgba), byte)), kFloat, color[k][1] + t);
       hn::Store(hn::ConvertTo(kFloat, hn::And(hn::ShiftRight<16>(rgba), byte)), kFloat, color[k][2] + t);
@@ -99,28 +98,28 @@ HWY_INLINE void setUp(const RasterTriangle* const* triangles, std::size_t count,
                           difference(1, 2), kFloat, four[2]);
     hn::StoreInterleaved4(difference(2, 0), difference(2, 1), difference(2, 2), hn::Zero(kFloat), kFloat,
                           four[3]);
-    for (std::size_t n = 0; n < kLanes; ++n) {
+    for (std::size_t n = 0; n < kLanes && t + n < count; ++n) {
       for (std::size_t part = 0; part < 4; ++part)
-        std::memcpy(planes[t + n].value + 4 * part, four[part] + 4 * n, 4 * sizeof(float));
+        std::memcpy(planes[numbers[t + n]].value + 4 * part, four[part] + 4 * n, 4 * sizeof(float));
     }
   }
 }
 
-HWY_INLINE Ints shade(const ShadingPlanes& planes, Floats x, Floats y, Floats u) {
-  const float* const p = planes.value;
-  const Floats dx = hn::Sub(x, hn::Set(kFloat, p[0])), dy = hn::Sub(y, hn::Set(kFloat, p[1]));
-  const auto weight = [&](float per_x, float per_y) {
-    return hn::Mul(hn::Add(hn::Mul(hn::Set(kFloat, per_x), dx), hn::Mul(hn::Set(kFloat, per_y), dy)), u);
+// `plane`: ShadingPlanes::value of the lanes, by number.
+template <class Plane>
+HWY_INLINE Ints shade(Plane plane, Floats x, Floats y, Floats u) {
+  const Floats dx = hn::Sub(x, plane(0)), dy = hn::Sub(y, plane(1));
+  const auto weight = [&](std::size_t per_x, std::size_t per_y) {
+    return hn::Mul(hn::Add(hn::Mul(plane(per_x), dx), hn::Mul(plane(per_y), dy)), u);
   };
   const Floats zero = hn::Zero(kFloat), one = hn::Set(kFloat, 1.0F);
-  const Floats second = hn::Min(hn::Max(weight(p[2], p[3]), zero), one);
-  const Floats third = hn::Min(hn::Max(weight(p[4], p[5]), zero), hn::Sub(one, second));
+  const Floats second = hn::Min(hn::Max(weight(2, 3), zero), one);
+  const Floats third = hn::Min(hn::Max(weight(4, 5), zero), hn::Sub(one, second));
   // The last bits of a number with this added are its nearest integer.
   constexpr float kBias = 8388608.0F;
   const auto channel = [&](std::size_t c) {
-    const Floats change =
-        hn::Add(hn::Mul(hn::Set(kFloat, p[9 + c]), second), hn::Mul(hn::Set(kFloat, p[12 + c]), third));
-    return hn::BitCast(kInt, hn::Add(hn::Add(hn::Set(kFloat, p[6 + c]), change), hn::Set(kFloat, kBias)));
+    const Floats change = hn::Add(hn::Mul(plane(9 + c), second), hn::Mul(plane(12 + c), third));
+    return hn::BitCast(kInt, hn::Add(hn::Add(plane(6 + c), change), hn::Set(kFloat, kBias)));
   };
   // What the bias leaves above the lowest byte is taken away from the sum.
   constexpr std::uint32_t kBiasBits = 0x4B000000;
@@ -129,12 +128,21 @@ HWY_INLINE Ints shade(const ShadingPlanes& planes, Floats x, Floats y, Floats u)
                  hn::Add(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(kRest))));
 }
 
-HWY_INLINE std::uint32_t bits(hn::Mask<IntTag> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kInt, mask, bytes);
-  std::uint32_t result = 0;
-  std::memcpy(&result, bytes, 4);
-  return result;
+// Pixels of several triangles: what each needs is loaded from its own.
+HWY_INLINE Ints shadeMixed(const ShadingPlanes* planes, const std::uint32_t* owner, Floats inverse_u,
+                           Floats x, Floats y, Floats u, Ints background) {
+  const auto seen = hn::Gt(inverse_u, hn::Zero(kFloat));
+  if (hn::AllFalse(kFloat, seen)) return background;
+  // Pixels that show nothing have no owner.
+  alignas(64) std::uint32_t number[kLanes];
+  hn::Store(hn::IfThenElseZero(hn::RebindMask(kUnsigned, seen), hn::Load(kUnsigned, owner)), kUnsigned,
+            number);
+  Floats values[4][4];
+  for (std::size_t part = 0; part < 4; ++part)
+    loadFours(
+        kFloat, [&](std::size_t n) { return planes[number[n]].value + 4 * part; }, values[part]);
+  const Ints color = shade([&](std::size_t n) { return values[n / 4][n % 4]; }, x, y, u);
+  return hn::IfThenElse(hn::RebindMask(kInt, seen), color, background);
 }
 
 // One row of pixels out of a row of blocks. Pictures are larger than caches and nothing reads them soon, so
@@ -158,11 +166,22 @@ HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
 
 void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, const TileBuffer& buffer,
                GouraudScratch& scratch, ColorFrame& frame) {
-  scratch.planes.resize((triangles.size() + kShadeBatch - 1) / kShadeBatch * kShadeBatch);
-  for (std::size_t first = 0; first < triangles.size(); first += kShadeBatch)
-    setUp(triangles.data() + first, std::min(kShadeBatch, triangles.size() - first),
-          scratch.planes.data() + first);
+  // Of those that were seen for a while.
+  scratch.planes.resize(std::max(triangles.size(), kShadeBatch));
+  alignas(64) std::uint32_t numbers[kShadeBatch];
+  std::size_t count = 0;
+  const auto flush = [&] {
+    if (count > 0) setUp(triangles.data(), numbers, count, scratch.planes.data());
+    count = 0;
+  };
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    numbers[count] = static_cast<std::uint32_t>(n);
+    count += buffer.wrote[n];
+    if (count == kShadeBatch) flush();
+  }
+  flush();
   const ShadingPlanes* const planes = scratch.planes.data();
+  const Ints background = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
 
   const float origin_x = static_cast<float>(tile.j * kTileSide) - static_cast<float>(tile.width - 1) * 0.5F;
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
@@ -186,26 +205,11 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
         const Floats x = hn::Add(block_x, hn::Load(kFloat, kLaneX + v));
         const Floats y = hn::Add(block_y, hn::Load(kFloat, kLaneY + v));
         const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
-        if (of_whole != nullptr) {
-          hn::Store(hn::BitCast(kUnsigned, shade(*of_whole, x, y, u)), kUnsigned, color + n);
-          continue;
-        }
-        Ints result = hn::Set(kInt, static_cast<std::int32_t>(frame.background));
-        const Ints owners = hn::BitCast(kInt, hn::Load(kUnsigned, owner + n));
-        auto left = hn::RebindMask(kInt, hn::Gt(inverse_u, hn::Zero(kFloat)));
-        while (!hn::AllFalse(kInt, left)) {
-          // The first and the last: most blocks show two.
-          const std::uint32_t lanes = bits(left);
-          const std::uint32_t first = owner[n + static_cast<std::size_t>(std::countr_zero(lanes))];
-          const std::uint32_t last = owner[n + static_cast<std::size_t>(std::bit_width(lanes)) - 1];
-          const auto of_first =
-              hn::And(left, hn::Eq(owners, hn::Set(kInt, static_cast<std::int32_t>(first))));
-          const auto of_last = hn::And(left, hn::Eq(owners, hn::Set(kInt, static_cast<std::int32_t>(last))));
-          result = hn::IfThenElse(of_first, shade(planes[first], x, y, u), result);
-          result = hn::IfThenElse(of_last, shade(planes[last], x, y, u), result);
-          left = hn::AndNot(hn::Or(of_first, of_last), left);
-        }
-        hn::Store(hn::BitCast(kUnsigned, result), kUnsigned, color + n);
+        const Ints colors =
+            of_whole != nullptr
+                ? shade([&](std::size_t k) { return hn::Set(kFloat, of_whole->value[k]); }, x, y, u)
+                : shadeMixed(planes, owner + n, inverse_u, x, y, u, background);
+        hn::Store(hn::BitCast(kUnsigned, colors), kUnsigned, color + n);
       }
     }
     const int height = std::min(kBlockSide, rows - block_i * kBlockSide);

@@ -93,6 +93,7 @@ class TileRasterizer {
   template <bool kCut>
   void runBatches(std::span<const RasterTriangle* const> triangles, std::size_t first,
                   std::span<std::uint8_t> crossing) {
+    buffer_.wrote.resize(triangles.size());
     PlacedTriangles placed;
     std::memset(&placed, 0, sizeof(placed));
     for (; first < triangles.size(); first += kSetUpBatch) {
@@ -369,6 +370,7 @@ class TileRasterizer {
       any_pass = hn::Or(any_pass, pass[v]);
       all_pass = hn::And(all_pass, pass[v]);
     }
+    buffer_.wrote[number] |= static_cast<std::uint8_t>(!hn::AllFalse(kInt, any_pass));
     buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
     const std::uint32_t whole = buffer_.whole[block];
     if (hn::AllTrue(kInt, all_pass)) {
@@ -414,6 +416,7 @@ void TileBuffer::clear() {
   inverse_u.fill(0);
   whole.fill(kNoTriangle);
   least.fill(0);
+  wrote.clear();
 }
 
 void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "librender/antialias/sample_pattern.h"
 #include "librender/raster/raster_triangle.h"
@@ -39,6 +40,7 @@ struct alignas(64) TileBuffer {
       whole;  // of a block that is one triangle's, or kNoTriangle
   // Of a block's 1/U; never too great. Blocks below and right of the last may be asked about.
   std::array<float, kBlocksAcross * kBlocksAcross + 4 * kBlocksAcross> least;
+  std::vector<std::uint8_t> wrote;  // not 0: some sample was the triangle's, at least for a while
 
   void clear();
 };

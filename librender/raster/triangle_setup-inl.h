@@ -15,6 +15,7 @@
 
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
+#include "librender/raster/load_fours-inl.h"
 #include "librender/raster/rounding-inl.h"
 #include "librender/raster/triangle_setup.h"
 
@@ -47,11 +48,6 @@ class TriangleSetUp {
     constexpr UnsignedTag u;
     const std::int32_t columns = std::min(kTileSide, tile_.width - tile_.j * kTileSide);
     const std::int32_t rows = std::min(kTileSide, tile_.height - tile_.i * kTileSide);
-    alignas(64) RasterVertex vertex[3][kSetUpBatch];
-    for (std::size_t t = 0; t < kSetUpBatch; ++t) {
-      const RasterTriangle& triangle = *triangles[std::min(t, count - 1)];
-      for (std::size_t k = 0; k < 3; ++k) vertex[k][t] = triangle.vertex[k];
-    }
     Dropped dropped;
     const std::int32_t reach = tile_.offsets != nullptr ? tile_.offsets->reach : 0;
     const Floats scale = hn::Set(f, static_cast<float>(kSubPixels));
@@ -62,8 +58,12 @@ class TriangleSetUp {
       Floats x[3], y[3], w[3];
       Ints sx[3], sy[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        Floats payload;
-        hn::LoadInterleaved4(f, &vertex[k][t].x, x[k], y[k], w[k], payload);
+        Floats record[4];
+        loadFours(
+            f, [&](std::size_t n) { return &triangles[std::min(t + n, count - 1)]->vertex[k].x; }, record);
+        x[k] = record[0];
+        y[k] = record[1];
+        w[k] = record[2];
         sx[k] = hn::Add(roundedInGuardBand(f, hn::Mul(x[k], scale)), offset_x);
         sy[k] = hn::Add(roundedInGuardBand(f, hn::Mul(y[k], scale)), offset_y);
       }
