@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 #include <utility>
 
+#include "librender/objects/grid_faces.h"
 #include "librender/objects/model_object_processor.h"
 #include "librender/objects/part_meshes.h"
 #include "librender/objects/report_objects.h"
@@ -137,17 +138,20 @@ Status FrameDrawer::drawTerrain(const Schedule& schedule) {
       TerrainSplits splits;
       TerrainVertices stitched = stitcher.vertices(of_cut, splits);
       const std::vector<std::uint8_t> replaced = seams_.replacedFaces(tile);
-      TerrainFaces faces = by_range
-                               ? reportFaces(tile, database_.grid(tile.grid), environment_.view,
-                                             options_.report_lod, stitched.position, replaced, objects[n])
-                               : terrainFaces(tile, stitched.position, splits, replaced);
+      GridFaces faces;
+      if (by_range) {
+        faces.listed = reportFaces(tile, database_.grid(tile.grid), environment_.view, options_.report_lod,
+                                   stitched.position, replaced, objects[n]);
+      } else {
+        faces = gridFaces(tile, stitched.position, splits, replaced);
+      }
       for (const TerrainFace& face : stitcher.seamFaces(of_cut, stitched))
-        addFace(faces, stitched.position, face);
+        addFace(faces.listed, stitched.position, face);
       Made made;
-      made.in = faces.in;
-      made.back_facing = faces.back_facing;
+      made.in = faces.in();
+      made.back_facing = faces.backFacing();
       made.node = PretiledNode::ofTerrain(cut[of_cut].node.record.grid, cut[of_cut].node.number,
-                                          std::move(stitched), std::move(faces.front));
+                                          std::move(stitched), std::move(faces));
       return made;
     });
     for (const FrameStatistics::Objects& counts : objects) statistics_.objects += counts;

@@ -185,8 +185,8 @@ class FaceCuller {
 };
 
 void cullRow(const GridRow& row, int width, int height, CulledFaces& out, CulledFaces& top,
-             CullCounts& counts) {
-  FaceCuller(width, height).cullRow(row, out, top, counts);
+             CullCounts& counts, std::int32_t reach) {
+  FaceCuller(width, height, reach).cullRow(row, out, top, counts);
 }
 
 void cullByCorners(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts,
@@ -215,12 +215,13 @@ HWY_EXPORT(cullIndexed);
 HWY_EXPORT(cullByCorners);
 }  // namespace
 
-void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts) {
+void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts,
+                 std::int32_t reach) {
   out.count = 0;
   // Top faces wait in the upper half until the number of bottom faces is known.
   const std::size_t half = row.cells + kRowPadding;
   CulledFaces top{out.face + half, out.tiles + half, 0};
-  HWY_DYNAMIC_DISPATCH(cullRow)(row, width, height, out, top, counts);
+  HWY_DYNAMIC_DISPATCH(cullRow)(row, width, height, out, top, counts, reach);
   std::copy_n(top.face, top.count, out.face + out.count);
   std::copy_n(top.tiles, top.count, out.tiles + out.count);
   out.count += top.count;

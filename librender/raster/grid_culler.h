@@ -71,6 +71,7 @@ void cullCornerFaces(const CornerFaces& faces, int width, int height, CulledFace
                      std::int32_t reach = 0);
 
 // Room for 2 * (cells + kRowPadding) entries in both lists. Adds to `counts`.
-void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts);
+void cullGridRow(const GridRow& row, int width, int height, CulledFaces& out, CullCounts& counts,
+                 std::int32_t reach = 0);
 
 }  // namespace deltaz

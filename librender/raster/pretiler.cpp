@@ -54,7 +54,7 @@ std::array<float, 3> toFloats(const LinearColor& color) {
 }
 
 void setAttributes(const PretiledNode& node, std::uint32_t number, FacePlanes& planes) {
-  const TerrainFace& face = node.faces[number];
+  const TerrainFace face = node.face(number);
   planes.identity = std::uint64_t{node.identity} << 32 | face.identity;
   planes.surface = node.surface;
   if (node.surface == Surface::kModel) {
@@ -73,9 +73,33 @@ void setAttributes(const PretiledNode& node, std::uint32_t number, FacePlanes& p
   }
 }
 
+// Of one worker, kept from node to node.
+struct ProjectionScratch {
+  std::vector<RasterVertex> vertex;
+  std::vector<std::int32_t> snapped_x, snapped_y;
+  void grow(std::size_t room) {
+    if (vertex.size() >= room) return;
+    vertex.resize(room);
+    snapped_x.resize(room);
+    snapped_y.resize(room);
+  }
+};
+
+// Of a word of CulledFaces::tiles.
+TileRange tileRange(std::uint32_t tiles) {
+  return {static_cast<std::int32_t>(tiles & 0xFF), static_cast<std::int32_t>(tiles >> 8 & 0xFF),
+          static_cast<std::int32_t>(tiles >> 16 & 0xFF), static_cast<std::int32_t>(tiles >> 24)};
+}
+
+void addCounts(const CullCounts& counts, PretiledNode& node) {
+  node.clipped += counts.outside;
+  // A front face whose snapped vertices run the other way is narrower than the snap and covers nothing.
+  node.no_sample += counts.back_facing + counts.no_sample;
+}
+
 std::array<Vector3, 3> cornersOf(const PretiledNode& node, std::uint32_t face) {
   const std::vector<Vector3>& position = node.positions();
-  const auto& vertex = node.faces[face].vertex;
+  const auto vertex = node.face(face).vertex;
   return {position[vertex[0]], position[vertex[1]], position[vertex[2]]};
 }
 
@@ -91,6 +115,23 @@ PretiledNode PretiledNode::ofTerrain(std::uint16_t grid, std::uint32_t record, T
   return node;
 }
 
+PretiledNode PretiledNode::ofTerrain(std::uint16_t grid, std::uint32_t record, TerrainVertices vertices,
+                                     GridFaces faces) {
+  PretiledNode node = ofTerrain(grid, record, std::move(vertices), std::move(faces.listed.front));
+  node.grid_faces = std::move(faces.cells);
+  return node;
+}
+
+TerrainFace PretiledNode::face(std::uint32_t number) const {
+  if ((number & kGridFace) == 0) return faces[number];
+  const std::uint32_t of_grid = number & ~kGridFace, cell = of_grid >> 1;
+  const auto columns = static_cast<std::uint32_t>(vertices.columns);
+  const std::uint32_t south_west = cell / (columns - 1) * columns + cell % (columns - 1);
+  const std::uint32_t north_east = south_west + columns + 1;
+  if ((of_grid & 1) == 0) return {{south_west, south_west + 1, north_east}, of_grid};
+  return {{south_west, north_east, south_west + columns}, of_grid};
+}
+
 PretiledNode PretiledNode::ofModel(std::uint32_t instance, ModelFaces model) {
   PretiledNode node;
   node.surface = Surface::kModel;
@@ -104,7 +145,19 @@ PretiledNode PretiledNode::ofModel(std::uint32_t instance, ModelFaces model) {
 FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::uint32_t face) {
   FacePlanes planes;
   setAttributes(node, face, planes);
-  ClipPolygon polygon(cornersOf(node, face));
+  const std::array<Vector3, 3> unclipped = cornersOf(node, face);
+  if (std::min({unclipped[0].x, unclipped[1].x, unclipped[2].x}) >= kHither) {
+    const std::array<WeightedScreenVertex, 3> on_screen = {{{project(view, unclipped[0]), 0, 0},
+                                                            {project(view, unclipped[1]), 1, 0},
+                                                            {project(view, unclipped[2]), 0, 1}}};
+    const double a = on_screen[0].screen.inverse_u, b = on_screen[1].screen.inverse_u;
+    const double c = on_screen[2].screen.inverse_u;
+    planes.least = std::min({a, b, c});
+    planes.greatest = std::max({a, b, c});
+    setPlanes(on_screen, planes);
+    return planes;
+  }
+  ClipPolygon polygon(unclipped);
   polygon.clipToHither();
   std::array<WeightedScreenVertex, 8> corners;
   std::size_t count = 0;
@@ -128,42 +181,78 @@ void Pretiler::process(PretiledNode& node, std::uint32_t number, TileBins::Write
   // Each vertex is projected and snapped once, though about six faces use it.
   const std::vector<Vector3>& positions = node.positions();
   const std::size_t room = positions.size() + kRowPadding;
-  std::vector<RasterVertex> vertex(room);
-  std::vector<std::int32_t> snapped_x(room), snapped_y(room);
-  projectViewPositions(positions, view_.width, view_.height,
-                       {vertex.data(), snapped_x.data(), snapped_y.data()});
+  thread_local ProjectionScratch scratch;
+  scratch.grow(room);
+  const ProjectedVertices vertices{scratch.vertex.data(), scratch.snapped_x.data(), scratch.snapped_y.data()};
+  projectViewPositions(positions, view_.width, view_.height, vertices);
+  if (!node.grid_faces.empty()) processGrid(node, number, vertices, bins);
+  processList(node, number, vertices, bins);
+}
 
+void Pretiler::processGrid(PretiledNode& node, std::uint32_t number, const ProjectedVertices& vertices,
+                           TileBins::Writer& bins) const {
+  const auto columns = static_cast<std::size_t>(node.vertices.columns), cells = columns - 1;
+  const std::size_t rows = static_cast<std::size_t>(node.vertices.rows) - 1;
+  thread_local std::vector<std::uint32_t> kept, tiles;
+  kept.resize(2 * (cells + kRowPadding));
+  tiles.resize(kept.size());
+  CullCounts counts;
+  for (std::size_t j = 0; j < rows; ++j) {
+    const std::size_t south = j * columns, north = south + columns;
+    CulledFaces faces{kept.data(), tiles.data(), 0};
+    cullGridRow({vertices.snapped_x + south, vertices.snapped_y + south, vertices.snapped_x + north,
+                 vertices.snapped_y + north, cells, &node.grid_faces[j * cells]},
+                view_.width, view_.height, faces, counts, reach_);
+    const auto first_of_row = static_cast<std::uint32_t>(j * cells * 2);
+    for (std::size_t n = 0; n < faces.count; ++n) {
+      const std::uint32_t face = (first_of_row + kept[n]) | kGridFace;
+      if (tiles[n] == kExceptional) {
+        processClipped(node, number, face, bins);
+        continue;
+      }
+      // Clockwise on the screen.
+      const RasterVertex* const south_west = vertices.vertex + south + (kept[n] >> 1);
+      const RasterVertex* const north_west = south_west + columns;
+      RasterTriangle triangle;
+      triangle.vertex[0] = south_west[0];
+      triangle.vertex[1] = (kept[n] & 1) != 0 ? north_west[0] : north_west[1];
+      triangle.vertex[2] = (kept[n] & 1) != 0 ? north_west[1] : south_west[1];
+      triangle.node = number;
+      triangle.face = face;
+      bins.add(triangle, tileRange(tiles[n]));
+    }
+  }
+  addCounts(counts, node);
+}
+
+void Pretiler::processList(PretiledNode& node, std::uint32_t number, const ProjectedVertices& vertices,
+                           TileBins::Writer& bins) const {
   static_assert(sizeof(TerrainFace) == 4 * sizeof(std::uint32_t));
   std::array<std::uint32_t, kFacesAtOnce + kRowPadding> kept, tiles;
   CullCounts counts;
   for (std::size_t first = 0; first < node.faces.size(); first += kFacesAtOnce) {
     const std::size_t count = std::min(kFacesAtOnce, node.faces.size() - first);
     CulledFaces faces{kept.data(), tiles.data(), 0};
-    cullCornerFaces({node.faces[first].vertex.data(), count, snapped_x.data(), snapped_y.data()}, view_.width,
-                    view_.height, faces, counts, reach_);
+    cullCornerFaces({node.faces[first].vertex.data(), count, vertices.snapped_x, vertices.snapped_y},
+                    view_.width, view_.height, faces, counts, reach_);
     for (std::size_t n = 0; n < faces.count; ++n) {
       const auto face = static_cast<std::uint32_t>(first + faces.face[n]);
-      const std::uint32_t range = faces.tiles[n];
-      if (range == kExceptional) {
+      if (faces.tiles[n] == kExceptional) {
         processClipped(node, number, face, bins);
         continue;
       }
       const auto& corner = node.faces[face].vertex;
       RasterTriangle triangle;
       // Counter-clockwise seen from the front runs clockwise on the screen in the opposite order.
-      triangle.vertex[0] = vertex[corner[0]];
-      triangle.vertex[1] = vertex[corner[2]];
-      triangle.vertex[2] = vertex[corner[1]];
+      triangle.vertex[0] = vertices.vertex[corner[0]];
+      triangle.vertex[1] = vertices.vertex[corner[2]];
+      triangle.vertex[2] = vertices.vertex[corner[1]];
       triangle.node = number;
       triangle.face = face;
-      bins.add(triangle,
-               {static_cast<std::int32_t>(range & 0xFF), static_cast<std::int32_t>(range >> 8 & 0xFF),
-                static_cast<std::int32_t>(range >> 16 & 0xFF), static_cast<std::int32_t>(range >> 24)});
+      bins.add(triangle, tileRange(faces.tiles[n]));
     }
   }
-  node.clipped += counts.outside;
-  // A front face whose snapped vertices run the other way is narrower than the snap and covers nothing.
-  node.no_sample += counts.back_facing + counts.no_sample;
+  addCounts(counts, node);
 }
 
 void Pretiler::processClipped(PretiledNode& node, std::uint32_t number, std::uint32_t face,

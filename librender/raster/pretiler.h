@@ -14,9 +14,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "librender/objects/grid_faces.h"
 #include "librender/objects/model_object_processor.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/raster/tile_bins.h"
+#include "librender/raster/vertex_projection.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/render.h"
 
@@ -66,22 +68,31 @@ struct FacePlanes {
   }
 };
 
+// Set in the number of a face of a node's own grid; the rest is the cell << 1, | 1 for the top face. Other
+// faces are numbered by their place in PretiledNode::faces.
+inline constexpr std::uint32_t kGridFace = std::uint32_t{1} << 31;
+
 // The front faces of one terrain node, or of one part of a model, with their vertices.
 struct PretiledNode {
   Surface surface = Surface::kTerrain;
-  std::uint16_t grid = 0;      // whose colours its faces show
-  std::uint32_t identity = 0;  // number of the node's record, or of the instance
-  TerrainVertices vertices;    // of a terrain node
-  std::vector<TerrainFace> faces;
+  std::uint16_t grid = 0;                // whose colours its faces show
+  std::uint32_t identity = 0;            // number of the node's record, or of the instance
+  TerrainVertices vertices;              // of a terrain node
+  std::vector<std::uint8_t> grid_faces;  // of the vertices' grid, as of GridFaces::cells
+  std::vector<TerrainFace> faces;        // all others
   ModelFaces model;  // of a part of a model; its faces, with no colours, stand in `faces` as well
   std::uint64_t clipped = 0, no_sample = 0;  // faces that left nothing: outside the picture, between samples
 
   static PretiledNode ofTerrain(std::uint16_t grid, std::uint32_t record, TerrainVertices vertices,
                                 std::vector<TerrainFace> front);
+  static PretiledNode ofTerrain(std::uint16_t grid, std::uint32_t record, TerrainVertices vertices,
+                                GridFaces faces);
   static PretiledNode ofModel(std::uint32_t instance, ModelFaces model);
   const std::vector<Vector3>& positions() const {
     return surface == Surface::kModel ? model.position : vertices.position;
   }
+  // By its number, kGridFace or not.
+  TerrainFace face(std::uint32_t number) const;
 };
 
 // Pre: some of the face lies in front of the hither plane.
@@ -97,6 +108,11 @@ class Pretiler {
   void process(PretiledNode& node, std::uint32_t number, TileBins::Writer& bins) const;
 
  private:
+  // The faces of the node's grid, and all others.
+  void processGrid(PretiledNode& node, std::uint32_t number, const ProjectedVertices& vertices,
+                   TileBins::Writer& bins) const;
+  void processList(PretiledNode& node, std::uint32_t number, const ProjectedVertices& vertices,
+                   TileBins::Writer& bins) const;
   // The careful way for one face; counted if nothing is left of it.
   void processClipped(PretiledNode& node, std::uint32_t number, std::uint32_t face,
                       TileBins::Writer& bins) const;
