@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "librender/antialias/sample_grid.h"
+#include "librender/antialias/sample_resolver.h"
 #include "librender/frame_drawer.h"
 #include "librender/raster/resolver.h"
 #include "librender/scene/arena.h"
@@ -16,8 +18,11 @@
 namespace deltaz {
 namespace {
 
-Result<Picture> renderInArena(const Database& database, const RenderOptions& options, FrameScratch& scratch,
+Result<Picture> renderInArena(const Database& database, const RenderOptions& asked, FrameScratch& scratch,
                               FrameStatistics& statistics) {
+  DELTAZ_TRY(checkSampling(asked));
+  // All but the resolver draws the sample grid.
+  const RenderOptions options = onSampleGrid(asked);
   Stopwatch watch;
   const std::uint64_t bytes_before = database.bytesRead();
   DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
@@ -43,12 +48,18 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
   DELTAZ_TRY(drawer.drawTerrain(schedule));
   DELTAZ_TRY(drawer.drawModels(models));
   statistics.projected_error += statistics.transform_error;
+  const double samples_across = samplesAcross(asked.sampling.count);
+  statistics.projected_error /= samples_across;
+  statistics.transform_error /= samples_across;
   const TiledFrame& frame = drawer.settle();
 
-  Picture picture = makePicture(options);
+  Picture picture = makePicture(asked);
   // What is seen is settled, so only the colours that are seen are read.
   TextureStore textures(environment.color_map);
-  const ResolverStatistics resolved = resolve(environment, frame, drawer.nodes(), textures, picture);
+  const ResolverStatistics resolved =
+      asked.sampling.isPlain()
+          ? resolve(environment, frame, drawer.nodes(), textures, picture)
+          : resolveSamples(environment, frame, drawer.nodes(), asked.sampling, textures, picture);
   DELTAZ_TRY(textures.status());
   statistics.color_tiles = textures.tileCount();
   statistics.bytes_read = database.bytesRead() - bytes_before;

@@ -31,8 +31,9 @@ FrameDrawer::FrameDrawer(const Database& database, const SeamIndex& seams, const
       scratch_(scratch),
       statistics_(statistics),
       watch_(watch),
-      pretiler_(environment.view) {
-  scratch_.tiler.begin(environment.view.width, environment.view.height);
+      offsets_(sampleOffsets(options.sampling.count, options.sampling.pattern)),
+      pretiler_(environment.view, offsets_ == nullptr ? 0 : offsets_->reach) {
+  scratch_.tiler.begin(environment.view.width, environment.view.height, offsets_);
 }
 
 TileBins& FrameDrawer::nextBins() {

@@ -28,7 +28,8 @@ namespace deltaz {
 
 class FrameDrawer {
  public:
-  // Refers to all of them. Adds to `statistics` what it does.
+  // Refers to all of them. Adds to `statistics` what it does. `environment` and `options` are those of the
+  // sample grid (antialias/sample_grid.h).
   FrameDrawer(const Database& database, const SeamIndex& seams, const Environment& environment,
               const RenderOptions& options, FrameScratch& scratch, FrameStatistics& statistics,
               Stopwatch& watch);
@@ -65,6 +66,7 @@ class FrameDrawer {
   FrameScratch& scratch_;
   FrameStatistics& statistics_;
   Stopwatch& watch_;
+  const SampleOffsets* offsets_;
   Pretiler pretiler_;
   std::unordered_map<std::uint32_t, std::unique_ptr<TerrainNode>> terrain_;  // by record
   std::vector<PretiledNode> pretiled_;                                       // as they are drawn

@@ -228,7 +228,7 @@ HWY_INLINE bool sampleMap(GridMapping& mapping, TextureStore& textures, const Fa
                                             static_cast<double>(face.greatest_row));
   // A place that is not known is not equal to itself.
   if (!(at_column - at_column == 0 && at_row - at_row == 0)) return false;
-  const double texels = size * mapping.texels_per_post;
+  const double texels = size * mapping.texels_per_post * mapping.footprint;
   int level = mapping.coarsest;
   float t = 0;
   if (texels < powerOfTwo(mapping.finest)) {
@@ -330,7 +330,7 @@ HWY_EXPORT(lightSamples);
 
 }  // namespace
 
-SampleShader::SampleShader(const Environment& environment, TextureStore& textures)
+SampleShader::SampleShader(const Environment& environment, TextureStore& textures, double footprint)
     : environment_(environment), textures_(textures) {
   const ColorMap* const map = textures.map();
   if (map == nullptr) return;
@@ -341,6 +341,7 @@ SampleShader::SampleShader(const Environment& environment, TextureStore& texture
     mapping.grid = tree.grid;
     mapping.finest = tree.finest_level;
     mapping.coarsest = tree.coarsest_level;
+    mapping.footprint = footprint;
     mapping.texels_per_post = 1 / colorTexelCells(map->leafCells(tree.grid), 0);
   }
 }

@@ -51,14 +51,15 @@ struct GridMapping {
   std::uint16_t grid = 0;
   int finest = 0, coarsest = 0;
   double texels_per_post = 0;      // of level 0
+  double footprint = 1;            // what a sample stands for, pixels of the view
   std::array<LastSquare, 2> last;  // of an even and of an odd level
 };
 
 class SampleShader {
  public:
   // Both must live as long. Tiles of the colour map are read when they are needed; what goes wrong is in
-  // TextureStore::status.
-  SampleShader(const Environment& environment, TextureStore& textures);
+  // TextureStore::status. Of the colour map a sample shows a square of `footprint` pixels of the view.
+  SampleShader(const Environment& environment, TextureStore& textures, double footprint = 1);
 
   void shade(SampleBatch& batch);
 

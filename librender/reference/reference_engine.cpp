@@ -13,6 +13,7 @@
 
 #include "libdb/access/grid_locator.h"
 #include "libdb/access/seam_geometry.h"
+#include "librender/antialias/sample_grid.h"
 #include "librender/objects/terrain_object_processor.h"
 #include "librender/reference/reference_models.h"
 #include "librender/reference/reference_texture.h"
@@ -39,9 +40,9 @@ struct Triangle {
   Surface surface = Surface::kTerrain;
 };
 
-// What is nearest in a pixel so far.
+// What is nearest in a sample so far.
 struct Sample {
-  double inverse_u = 0;
+  double inverse_u = 0, centre_inverse_u = 0;  // there, and of its plane at the pixel's centre
   LinearColor color;
   double intensity = 0;
   std::uint16_t grid = 0;
@@ -242,19 +243,32 @@ Box boxOf(const Triangle& triangle, const ViewTransform& view) {
           std::min(view.height - 1, pixel(view.centre_i + bottom + 1, view.height))};
 }
 
-// Draws what of the triangle lies in rows first_i .. last_i. Returns whether it covered a sample there.
-bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, int first_i, int last_i,
-          std::vector<Sample>& samples, FrameStatistics::Samples& counts) {
+// 1/U of the vertices at most and at least, of what lies in front of the hither plane.
+std::array<double, 2> inverseDepths(const Triangle& triangle) {
+  std::array<double, 2> range = {1 / kHither, 0};
+  for (const Vertex* vertex : triangle.vertex) {
+    const double inverse_u = 1 / std::max(vertex->position.x, kHither);
+    range = {std::min(range[0], inverse_u), std::max(range[1], inverse_u)};
+  }
+  return range;
+}
+
+// Draws what of the triangle lies in rows first_i .. last_i of the sample grid. Returns whether it covered a
+// sample there.
+bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, const SampleGrid& grid,
+          int first_i, int last_i, std::vector<Sample>& samples, FrameStatistics::Samples& counts) {
   const Vector3 &a = triangle.vertex[0]->position, &b = triangle.vertex[1]->position,
                 &c = triangle.vertex[2]->position;
   const Vector3 edge_a = cross(b, c), edge_b = cross(c, a), edge_c = cross(a, b);
   // The face's plane: normal . p = constant; on the ray, 1/U = normal . ray / constant.
   const Vector3 normal = cross(b - a, c - a);
   const double constant = dot(normal, a);
+  const std::array<double, 2> range = inverseDepths(triangle);
+  const auto ray_at = [&](double j, double i) { return Vector3{1, j - view.centre_j, i - view.centre_i}; };
   bool covers = false;
   for (int i = std::max(first_i, box.first_i); i <= std::min(last_i, box.last_i); ++i) {
     for (int j = box.first_j; j <= box.last_j; ++j) {
-      const Vector3 ray{1, j - view.centre_j, i - view.centre_i};
+      const Vector3 ray = ray_at(grid.placeJ(j, i), grid.placeI(j, i));
       // For a front face all three are negative inside; each is its vertex's weight times a common factor.
       const double weight_a = dot(edge_a, ray), weight_b = dot(edge_b, ray), weight_c = dot(edge_c, ray);
       if (weight_a > 0 || weight_b > 0 || weight_c > 0) continue;
@@ -269,12 +283,15 @@ bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, i
       ++counts.written;
       const auto& [first, second, third] = triangle.vertex;
       sample.inverse_u = inverse_u;
+      const Vector3 centre = ray_at(grid.centre(j / grid.across()), grid.centre(i / grid.across()));
+      sample.centre_inverse_u = std::clamp(dot(normal, centre) / constant, range[0], range[1]);
       sample.color = first->color * (weight_a / sum) + second->color * (weight_b / sum) +
                      third->color * (weight_c / sum);
       sample.intensity = first->intensity * (weight_a / sum) + second->intensity * (weight_b / sum) +
                          third->intensity * (weight_c / sum);
       sample.grid = triangle.grid;
       sample.texture = referenceFootprint({a, b, c}, {first->texture, second->texture, third->texture}, ray);
+      sample.texture.pixel_size *= grid.across();
       sample.surface = triangle.surface;
       sample.identity = triangle.identity;
     }
@@ -282,31 +299,81 @@ bool draw(const Triangle& triangle, const Box& box, const ViewTransform& view, i
   return covers;
 }
 
+// What a sample shows: nothing of the terrain, then the sea or the sky.
+struct SeenSample {
+  LinearColor color;  // through the haze
+  Surface surface = Surface::kSky;
+  double u = 0;
+};
+
+Result<SeenSample> seenAt(const Sample& sample, const Environment& environment, const Vector3& ray,
+                          ReferenceTexture& texture) {
+  const double sea_u = environment.sea.depth(ray);
+  const double nearest_u = 1 / sample.inverse_u;  // infinite where there is none
+  SeenSample seen;
+  if (sample.inverse_u > 0 && nearest_u <= sea_u) {
+    seen = {sample.color, sample.surface, nearest_u};
+    if (sample.surface == Surface::kTerrain) {
+      DELTAZ_TRY_ASSIGN(seen.color,
+                        texture.shade(sample.color, sample.intensity, sample.grid, sample.texture));
+    }
+  } else if (sea_u < std::numeric_limits<double>::infinity()) {
+    seen = {environment.sea.color(ray, sea_u), Surface::kSea, sea_u};
+  } else {
+    seen = {environment.atmosphere.sky(ray), Surface::kSky, sea_u};
+  }
+  seen.color = seenColor(environment, ray, seen.surface, seen.u, seen.color);
+  return seen;
+}
+
+// Every sample is shaded, whatever its neighbours show. `environment` is that of the sample grid.
 Result<Picture> finish(const std::vector<Sample>& samples, const Environment& environment,
                        const RenderOptions& options, FrameStatistics& statistics) {
   Picture picture = makePicture(options);
   ReferenceTexture texture(environment.color_map);
+  const SampleGrid grid(options.sampling);
+  const int columns = environment.view.width, rows = environment.view.height;
+  const auto at = [&](int j, int i) {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(j);
+  };
+  std::vector<SeenSample> seen(samples.size());
   std::uint64_t covered = 0;
-  for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
-    const Sample& sample = samples[pixel];
-    const auto width = static_cast<std::size_t>(picture.width);
-    const std::size_t j = pixel % width, i = pixel / width;
-    const Vector3 ray = environment.view.ray(static_cast<double>(j), static_cast<double>(i));
-    const double sea_u = environment.sea.depth(ray);
-    const double nearest_u = 1 / sample.inverse_u;  // infinite where there is none
-    covered += sample.inverse_u > 0;
-    if (sample.inverse_u > 0 && nearest_u <= sea_u) {
-      LinearColor color = sample.color;
-      if (sample.surface == Surface::kTerrain) {
-        DELTAZ_TRY_ASSIGN(color, texture.shade(sample.color, sample.intensity, sample.grid, sample.texture));
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const Vector3 ray = environment.view.ray(grid.placeJ(j, i), grid.placeI(j, i));
+      DELTAZ_TRY_ASSIGN(seen[at(j, i)], seenAt(samples[at(j, i)], environment, ray, texture));
+      covered += samples[at(j, i)].inverse_u > 0;
+      statistics.samples.shaded += seen[at(j, i)].surface >= Surface::kTerrain;
+    }
+  }
+
+  const FilterKernel kernel(options.sampling);
+  const int across = grid.across(), reach = kernel.reach();
+  const int central = centralSample(samplePlaces(options.sampling.count, options.sampling.pattern));
+  for (int i = 0; i < picture.height; ++i) {
+    for (int j = 0; j < picture.width; ++j) {
+      LinearColor sum;
+      for (int ni = std::max(0, i - reach); ni <= std::min(picture.height - 1, i + reach); ++ni) {
+        for (int nj = std::max(0, j - reach); nj <= std::min(picture.width - 1, j + reach); ++nj) {
+          for (int s = 0; s < options.sampling.count; ++s) {
+            sum = sum + seen[at(nj * across + s % across, ni * across + s / across)].color *
+                            kernel.weight(nj - j, ni - i, s);
+          }
+        }
       }
-      storePixel(environment, ray, sample.surface, nearest_u, color, pixel, picture);
-      if (options.keep_triangle_ids) picture.triangle[pixel] = sample.identity;
-      ++statistics.samples.shaded;
-    } else if (sea_u < std::numeric_limits<double>::infinity()) {
-      storePixel(environment, ray, Surface::kSea, sea_u, environment.sea.color(ray, sea_u), pixel, picture);
-    } else {
-      storePixel(environment, ray, Surface::kSky, sea_u, environment.atmosphere.sky(ray), pixel, picture);
+      const std::size_t nearest = at(j * across + central % across, i * across + central / across);
+      const std::size_t pixel =
+          static_cast<std::size_t>(i) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(j);
+      double u = seen[nearest].u;
+      if (seen[nearest].surface >= Surface::kTerrain) {
+        u = 1 / samples[nearest].centre_inverse_u;
+        if (options.keep_triangle_ids) picture.triangle[pixel] = samples[nearest].identity;
+      } else if (seen[nearest].surface == Surface::kSea) {
+        const double at_centre = environment.sea.depth(environment.view.ray(grid.centre(j), grid.centre(i)));
+        if (at_centre < std::numeric_limits<double>::infinity()) u = at_centre;
+      }
+      storeSeen(seen[nearest].surface, u, sum * (1 / kernel.sum(j, i, picture.width, picture.height)), pixel,
+                picture);
     }
   }
   statistics.color_tiles = texture.tilesRead();
@@ -337,7 +404,9 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
                               FrameStatistics& statistics) {
   Stopwatch watch;
   const std::uint64_t bytes_before = database.bytesRead();
-  DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, options));
+  DELTAZ_TRY(checkSampling(options));
+  DELTAZ_TRY_ASSIGN(const Environment environment, makeEnvironment(database, onSampleGrid(options)));
+  const SampleGrid sample_grid(options.sampling);
   const ViewTransform& view = environment.view;
 
   std::vector<Node> nodes;
@@ -395,7 +464,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& opt
       for (std::size_t t = 0; t < triangles[n].size(); ++t) {
         const Box box = boxOf(triangles[n][t], view);
         if (box.last_i < first_i || box.first_i > last_i) continue;
-        if (draw(triangles[n][t], box, view, first_i, last_i, samples,
+        if (draw(triangles[n][t], box, view, sample_grid, first_i, last_i, samples,
                  of_band[static_cast<std::size_t>(band)]))
           std::atomic_ref<std::uint8_t>(covers[n][t]).store(1, std::memory_order_relaxed);
       }

@@ -6,7 +6,11 @@
 // snapping, and no clipping but U > kHither. Depth is U of the face's plane, in double. The scene definitions
 // (illumination, colour, haze, sea, sky) are those of librender/scene, as for every engine.
 //
-// Tolerance and level options are ignored. Cost: seconds for millions of triangles; about 200 bytes a post.
+// With several samples a pixel every sample is drawn so and shaded by itself, and the colours are weighted in
+// double.
+//
+// Tolerance and level options are ignored. Cost: seconds for millions of triangles; about 200 bytes a post,
+// and 150 a sample.
 #pragma once
 
 #include "librender/scene/render.h"

@@ -8,8 +8,6 @@
 namespace deltaz {
 namespace {
 
-constexpr int kLargestPicture = 1 << 14;  // pixels a side: the guard band of the pretiler
-
 Status checkOptions(const RenderOptions& options) {
   const Camera& camera = options.camera;
   if (camera.width < 1 || camera.height < 1 || camera.width > kLargestPicture ||
@@ -68,10 +66,17 @@ Picture makePicture(const RenderOptions& options) {
   return picture;
 }
 
+LinearColor seenColor(const Environment& environment, const Vector3& ray, Surface surface, double u,
+                      const LinearColor& color) {
+  return surface == Surface::kSky ? color : environment.atmosphere.throughHaze(color, ray, u);
+}
+
 void storePixel(const Environment& environment, const Vector3& ray, Surface surface, double u,
                 const LinearColor& color, std::size_t pixel, Picture& picture) {
-  const LinearColor seen =
-      surface == Surface::kSky ? color : environment.atmosphere.throughHaze(color, ray, u);
+  storeSeen(surface, u, seenColor(environment, ray, surface, u, color), pixel, picture);
+}
+
+void storeSeen(Surface surface, double u, const LinearColor& seen, std::size_t pixel, Picture& picture) {
   picture.rgb[3 * pixel] = encodeSrgb(seen.red);
   picture.rgb[3 * pixel + 1] = encodeSrgb(seen.green);
   picture.rgb[3 * pixel + 2] = encodeSrgb(seen.blue);

@@ -10,6 +10,8 @@
 
 namespace deltaz {
 
+inline constexpr int kLargestPicture = 1 << 14;  // pixels a side: the guard band of the pretiler
+
 struct Environment {
   ViewTransform view;
   Light light;
@@ -29,7 +31,14 @@ Result<Environment> makeEnvironment(const Database& database, const RenderOption
 // A picture of the frame's size with room for what the options ask for, all sky.
 Picture makePicture(const RenderOptions& options);
 
-// Stores a finished pixel: colour before haze, what it is, and its depth (+infinity for sky).
+// What is left at the eye of a colour at depth `u` along the ray.
+LinearColor seenColor(const Environment& environment, const Vector3& ray, Surface surface, double u,
+                      const LinearColor& color);
+
+// Stores a finished pixel: the colour that is seen, what it is, and its depth (+infinity for sky).
+void storeSeen(Surface surface, double u, const LinearColor& seen, std::size_t pixel, Picture& picture);
+
+// The same of a colour before haze.
 void storePixel(const Environment& environment, const Vector3& ray, Surface surface, double u,
                 const LinearColor& color, std::size_t pixel, Picture& picture);
 

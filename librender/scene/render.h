@@ -15,6 +15,7 @@
 
 #include "formats/error.h"
 #include "libdb/access/database.h"
+#include "librender/antialias/filter.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/pose.h"
 #include "librender/scene/report_schedule.h"
@@ -42,6 +43,9 @@ struct RenderOptions {
   // Of terrain posts. All but exact leave cracks between nodes, of the size of their error
   // (objects/transform_posts.h). The reference is always exact.
   TransformKind transform = TransformKind::kExact;
+  // Antialiasing. Depth, surface and triangle of a picture are those of the face that the sample nearest to
+  // the pixel's centre shows; depth is that of the face's plane at the centre, within the face's own range.
+  Sampling sampling;
   // >= 0: draw this level, of terrain and of models, whatever the tolerance (tests and benches).
   int fixed_level = -1;
   int threads = 0;  // 0: as many as the machine has

@@ -45,6 +45,8 @@ class Sea {
   void depths(const RayLists& rays, double* u) const;
   void colors(const RayLists& rays, const double* u, const ColorLists& colors) const;
 
+  const SeaTerms& terms() const { return terms_; }
+
  private:
   SeaTerms terms_;
 };

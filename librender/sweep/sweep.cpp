@@ -32,13 +32,17 @@ class Sweeper {
     options.tolerance = setting.tolerance;
     options.lod = setting.lod;
     options.transform = setting.transform;
+    options.sampling.count = setting.samples;
     return engine_->render(*databases_[setting.database], options, statistics);
   }
 
   Result<SweepOfView> sweepView(const SweepView& view) {
     SweepOfView swept{view, {}};
     FrameStatistics unused;
-    DELTAZ_TRY_ASSIGN(const Picture reference, render(view, {0, request_.reference_tolerance}, unused));
+    SweepSetting of_reference;
+    of_reference.tolerance = request_.reference_tolerance;
+    of_reference.samples = request_.reference_samples;
+    DELTAZ_TRY_ASSIGN(const Picture reference, render(view, of_reference, unused));
     for (const SweepSetting& setting : request_.settings) {
       SweepRow row;
       row.setting = setting;

@@ -32,15 +32,19 @@ struct SweepSetting {
   double tolerance = 1;      // pixels; with LodScheme::kReport of models alone
   LodScheme lod = LodScheme::kError;
   TransformKind transform = TransformKind::kExact;
+  int samples = 1;  // a pixel
 };
 
 struct SweepRequest {
   std::vector<SweepView> views;
   std::vector<SweepSetting> settings;
-  // Sun, colour map, poses and threads of every frame; its camera and its knobs are not used.
+  // Sun, colour map, poses, pattern and filter of samples, and threads of every frame; its camera and its
+  // knobs are not used.
   RenderOptions common;
-  double reference_tolerance = 0;  // of the picture that others are held against, pixels
-  int repeats = 5;                 // rounds that are timed, >= 1
+  // Of the picture that others are held against: pixels, and samples a pixel.
+  double reference_tolerance = 0;
+  int reference_samples = 1;
+  int repeats = 5;  // rounds that are timed, >= 1
   // Called before each frame with the fraction done; may be empty.
   std::function<void(double fraction)> progress = {};
 };

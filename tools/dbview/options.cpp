@@ -6,6 +6,7 @@
 
 #include "formats/file_system.h"
 #include "libdb/access/simd_target.h"
+#include "librender/antialias/sample_grid.h"
 #include "tools/common/output_file.h"
 #include "tools/common/parse.h"
 
@@ -51,6 +52,10 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
   app.add_option("--tolerance", options.tolerance,
                  "Largest error on the screen, pixels; 0 draws full resolution (default: 1)")
       ->type_name("PX");
+  app.add_option("--samples", options.samples,
+                 "Samples a pixel, against jagged edges: 1, 4, 16 or 64 (default: 1)")
+      ->type_name("N");
+  addSamplingOptions(app, options.sampling);
   app.add_option(
          "--lod", options.lod,
          "How coarse the terrain may be: error, within --tolerance, or report, by range as in 1983: no "
@@ -94,6 +99,7 @@ Result<View> parseView(const ViewOptions& options) {
   DELTAZ_TRY_ASSIGN(view.camera, parseCamera(options.scene.camera));
   DELTAZ_TRY_ASSIGN(const double tolerance,
                     parseNumberBetween(options.tolerance, "--tolerance", 0, kLargestTolerance));
+  DELTAZ_TRY_ASSIGN(const int samples, parseSampleCount(options.samples, "--samples"));
   const LodScheme lod = options.lod == "report" ? LodScheme::kReport : LodScheme::kError;
   DELTAZ_TRY_ASSIGN(const std::int64_t repeat, parseInteger(options.repeat, "--repeat", 1, kLargestRepeat));
   view.repeat = static_cast<int>(repeat);
@@ -116,6 +122,10 @@ Result<View> parseView(const ViewOptions& options) {
   DELTAZ_TRY(checkOutputs(options));
   DELTAZ_TRY_ASSIGN(RenderOptions render, parseScene(options.scene, options.common));
   render.tolerance = tolerance;
+  render.sampling = parseSampling(options.sampling);
+  render.sampling.count = samples;
+  render.camera = view.camera.camera;
+  DELTAZ_TRY(checkSampling(render));
   render.lod = lod;
   render.transform = *transform;
   view.render = std::move(render);

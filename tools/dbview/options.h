@@ -5,6 +5,7 @@
 
 #include "librender/scene/render.h"
 #include "tools/common/command_line.h"
+#include "tools/dbview/sampling_options.h"
 #include "tools/dbview/scene_options.h"
 
 namespace deltaz {
@@ -14,6 +15,8 @@ struct ViewOptions {
   std::string area, output;
   SceneOptions scene;
   std::string tolerance = "1";
+  std::string samples = "1";
+  SamplingOptions sampling;
   std::string lod = "error";
   std::string transform = "exact";
   std::string engine = "fast";

@@ -101,6 +101,9 @@ Json statisticsJson(const std::string& area, const View& view, std::span<const F
   json["tolerance"] = view.render.tolerance;
   json["lod"] = lodName(view.render.lod);
   json["transform"] = transformName(view.render.transform);
+  json["samples"] = view.render.sampling.count;
+  json["pattern"] = samplePatternName(view.render.sampling.pattern);
+  json["filter"] = filterName(view.render.sampling.filter);
   json["repeat"] = repeats.size();
   json["camera"] = cameraJson(view.render.camera);
   json["sun"] = {{"azimuth", view.render.sun.azimuth}, {"elevation", view.render.sun.elevation}};

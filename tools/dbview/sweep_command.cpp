@@ -11,6 +11,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "librender/antialias/sample_grid.h"
 #include "librender/sweep/requantized_area.h"
 #include "tools/common/output_file.h"
 #include "tools/common/progress.h"
@@ -83,12 +84,35 @@ std::vector<SweepSetting> settingsOf(const SweepPlan& plan, std::size_t database
       for (const LodScheme lod : plan.lods) {
         // Ranges know no tolerance; models are drawn at the default one.
         const std::vector<double> by_range = {1};
-        for (const double tolerance : lod == LodScheme::kReport ? by_range : plan.tolerances)
-          settings.push_back({database, tolerance, lod, transform});
+        for (const double tolerance : lod == LodScheme::kReport ? by_range : plan.tolerances) {
+          for (const int samples : plan.samples)
+            settings.push_back({database, tolerance, lod, transform, samples});
+        }
       }
     }
   }
   return settings;
+}
+
+// Of the picture that others are held against: where samples are tried, as many as every view has room for.
+// kUsage if a view has no room for what is tried.
+Result<int> referenceSamples(const SweepPlan& plan, const std::vector<SweepView>& views) {
+  const auto check = [&](int samples) -> Status {
+    RenderOptions options = plan.render;
+    options.sampling.count = samples;
+    for (const SweepView& view : views) {
+      options.camera = view.camera;
+      DELTAZ_TRY(checkSampling(options));
+    }
+    return Success{};
+  };
+  const int most = plan.samples.back();
+  DELTAZ_TRY(check(most));
+  if (most == 1) return 1;
+  for (const int samples : {64, 16}) {
+    if (samples > most && check(samples).ok()) return samples;
+  }
+  return most;
 }
 
 }  // namespace
@@ -130,6 +154,9 @@ Result<int> runSweep(const SweepOptions& options) {
     request.settings = settingsOf(plan, databases.size());
     request.common = plan.render;
     request.reference_tolerance = plan.reference_tolerance;
+    DELTAZ_TRY_ASSIGN(request.reference_samples, referenceSamples(plan, request.views));
+    report.reference_samples = request.reference_samples;
+    report.sampling = plan.render.sampling;
     request.repeats = plan.repeats;
     request.progress = [&](double fraction) { progress.report("sweeping", fraction); };
     std::vector<const Database*> swept;

@@ -23,6 +23,7 @@ Json rowsJson(const SweepReport& report, const std::vector<SweepRow>& rows) {
     one["setting"] = {{"tolerance", by_range ? Json(nullptr) : Json(row.setting.tolerance)},
                       {"lod", lodName(row.setting.lod)},
                       {"transform", transformName(row.setting.transform)},
+                      {"samples", row.setting.samples},
                       {"quantum", report.quanta[row.setting.database]}};
     one["frame_ms"] = {{"min", row.milliseconds.minimum},
                        {"median", row.milliseconds.median},
@@ -58,6 +59,9 @@ Json sweepJson(const SweepReport& report) {
   json["area"] = report.area;
   json["repeat"] = report.repeats;
   json["reference_tolerance"] = report.reference_tolerance;
+  json["reference_samples"] = report.reference_samples;
+  json["pattern"] = samplePatternName(report.sampling.pattern);
+  json["filter"] = filterName(report.sampling.filter);
   json["machine"] = {{"processors", report.machine.processors},
                      {"threads", report.machine.threads},
                      {"load_before", loadJson(report.machine.load_before)},

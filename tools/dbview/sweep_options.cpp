@@ -88,6 +88,19 @@ Result<std::vector<TransformKind>> parseTransforms(const std::string& text) {
   return values;
 }
 
+Result<std::vector<int>> parseSamples(const std::string& text) {
+  DELTAZ_TRY_ASSIGN(const std::vector<std::string> parts, listOf(text, "--samples"));
+  std::vector<int> values;
+  for (const std::string& part : parts) {
+    DELTAZ_TRY_ASSIGN(const int value, parseSampleCount(part, "--samples"));
+    if (std::find(values.begin(), values.end(), value) != values.end())
+      return repeatedValue("--samples", part);
+    values.push_back(value);
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
 Status parseReports(const SweepOptions& options, SweepPlan& plan) {
   for (const std::string& report : options.reports) {
     const bool json = report.starts_with("json=");
@@ -128,6 +141,12 @@ void addSweepOptions(CLI::App& app, SweepOptions& options) {
   app.add_option("--transforms", options.transforms,
                  "Transforms of posts to try: exact,local,delta,matrix (default: exact)")
       ->type_name("TRANSFORM,...");
+  app.add_option(
+         "--samples", options.samples,
+         "Samples a pixel to try: 1,4,16,64 (default: 1). With more than one the picture that colours "
+         "are held against has 64, or as many as its size allows")
+      ->type_name("N,...");
+  addSamplingOptions(app, options.sampling);
   app.add_option("--reference", options.reference,
                  "Tolerance of the picture that colours are held against, pixels (default: 0, full "
                  "resolution)")
@@ -153,6 +172,7 @@ Result<SweepPlan> parseSweep(const SweepOptions& options) {
   DELTAZ_TRY_ASSIGN(plan.tolerances, parseTolerances(options.tolerances));
   DELTAZ_TRY_ASSIGN(plan.lods, parseLods(options.lods));
   DELTAZ_TRY_ASSIGN(plan.transforms, parseTransforms(options.transforms));
+  DELTAZ_TRY_ASSIGN(plan.samples, parseSamples(options.samples));
   DELTAZ_TRY_ASSIGN(plan.quanta, parseQuanta(options.quanta));
   DELTAZ_TRY_ASSIGN(plan.reference_tolerance,
                     parseNumberBetween(options.reference, "--reference", 0, kLargestTolerance));
@@ -160,6 +180,7 @@ Result<SweepPlan> parseSweep(const SweepOptions& options) {
   plan.repeats = static_cast<int>(repeats);
   DELTAZ_TRY(parseReports(options, plan));
   DELTAZ_TRY_ASSIGN(plan.render, parseScene(options.scene, options.common));
+  plan.render.sampling = parseSampling(options.sampling);
   if (!options.views_path.empty()) {
     DELTAZ_TRY_ASSIGN(plan.views, readViewsFile(options.views_path, options.scene.camera));
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/dbview/sampling_options.h"
 #include "tools/dbview/scene_options.h"
 #include "tools/dbview/sweep_views.h"
 
@@ -18,6 +19,8 @@ struct SweepOptions {
   std::string quanta;
   std::string lods = "error";
   std::string transforms = "exact";
+  std::string samples = "1";
+  SamplingOptions sampling;
   std::string reference = "0";
   std::string repeat = "5";
   std::vector<std::string> reports;
@@ -34,6 +37,7 @@ struct SweepPlan {
   std::vector<double> tolerances;
   std::vector<LodScheme> lods;
   std::vector<TransformKind> transforms;
+  std::vector<int> samples;
   std::vector<Rational> quanta;  // beside the database's own
   double reference_tolerance = 0;
   int repeats = 5;

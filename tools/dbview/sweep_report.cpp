@@ -74,6 +74,13 @@ std::vector<SweptKnob> sweptKnobs(const SweepReport& report) {
     };
     knobs.push_back({"transform", name, name});
   }
+  if (differ([](const SweepSetting& setting) { return setting.samples; })) {
+    knobs.push_back({"samples",
+                     [](const SweepSetting& setting) { return fmt::format("{}", setting.samples); },
+                     [](const SweepSetting& setting) {
+                       return fmt::format("{} sample{}", setting.samples, setting.samples == 1 ? "" : "s");
+                     }});
+  }
   if (differ([](const SweepSetting& setting) { return setting.database; })) {
     knobs.push_back({"quantum m",
                      [&](const SweepSetting& setting) { return report.quanta[setting.database]; },
@@ -140,8 +147,9 @@ std::string textReport(const SweepReport& report) {
   }
   text += fmt::format(
       "\nfront: nothing is both faster and nearer to the full-resolution surface (d), or to the colours at "
-      "tolerance {} (c)\n",
-      report.reference_tolerance);
+      "tolerance {}{} (c)\n",
+      report.reference_tolerance,
+      report.reference_samples > 1 ? fmt::format(" with {} samples", report.reference_samples) : "");
   for (const SweepMeasure measure : {SweepMeasure::kDisplacement, SweepMeasure::kPicture}) {
     if (const std::string sentence = frontSentence(report, measure); !sentence.empty())
       text += sentence + ".\n";

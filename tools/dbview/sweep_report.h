@@ -21,6 +21,8 @@ struct SweepReport {
   std::string area;  // base name
   int repeats = 0;
   double reference_tolerance = 0;
+  int reference_samples = 1;
+  Sampling sampling;                // pattern and filter of all pictures
   std::vector<std::string> quanta;  // of the databases, metres
   SweepMachine machine;
   std::vector<SweepOfView> views;

@@ -1,0 +1,136 @@
+#include "librender/antialias/pixel_fragments.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace deltaz {
+namespace {
+
+double planeAt(const FaceLanes& face, double j, double i) {
+  return face.value[kInverseU] +
+         (face.per_j[kInverseU] * (j - face.anchor_j) + face.per_i[kInverseU] * (i - face.anchor_i));
+}
+
+}  // namespace
+
+FragmentGatherer::FragmentGatherer(const Environment& environment, const Sampling& sampling)
+    : environment_(environment),
+      grid_(sampling),
+      across_(grid_.across()),
+      count_(static_cast<std::size_t>(sampling.count)),
+      all_(sampling.count == kMost ? ~std::uint64_t{0} : (std::uint64_t{1} << sampling.count) - 1),
+      places_(samplePlaces(sampling.count, sampling.pattern)) {}
+
+void FragmentGatherer::enter(const SettledTile& tile, std::span<const FaceLanes> faces, int tile_j,
+                             int tile_i) {
+  tile_ = &tile;
+  faces_ = faces;
+  first_j_ = tile_j * kTileSide;
+  first_i_ = tile_i * kTileSide;
+  const SeaTerms& sea = environment_.sea.terms();
+  sea_ = seaCover(sea, environment_.view, first_j_ - 0.5, first_i_ - 0.5, first_j_ + kTileSide - 0.5,
+                  first_i_ + kTileSide - 0.5);
+  if (sea_ == SeaCover::kEverywhere) {
+    constexpr double kMiddle = (kTileSide - 1) / 2.0;
+    bound_ = seaBound(sea, environment_.view, first_j_ + kMiddle, first_i_ + kMiddle);
+  }
+}
+
+bool FragmentGatherer::isBeforeSea(const FaceLanes& face, double j, double i) const {
+  const double above = planeAt(face, j, i) - bound_.at(j, i);
+  const double change =
+      std::abs(face.per_j[kInverseU] - bound_.per_j) + std::abs(face.per_i[kInverseU] - bound_.per_i);
+  return above > change * (across_ / 2.0);
+}
+
+void FragmentGatherer::meetSea(int first_j, int first_i) {
+  alignas(64) double x[kMost + kVectorPadding], y[kMost + kVectorPadding], z[kMost + kVectorPadding];
+  alignas(64) double sea_u[kMost + kVectorPadding];
+  std::array<double, kMost> at_j, at_i;
+  for (std::size_t s = 0; s < count_; ++s) {
+    const int j = first_j + static_cast<int>(s) % across_, i = first_i + static_cast<int>(s) / across_;
+    at_j[s] = grid_.placeJ(j, i);
+    at_i[s] = grid_.placeI(j, i);
+    const Vector3 ray = environment_.view.ray(at_j[s], at_i[s]);
+    x[s] = ray.x;
+    y[s] = ray.y;
+    z[s] = ray.z;
+  }
+  for (std::size_t s = count_; s < count_ + kVectorPadding; ++s) x[s] = y[s] = z[s] = 0;
+  environment_.sea.depths({x, y, z, count_}, sea_u);
+  for (std::size_t s = 0; s < count_; ++s) {
+    const bool sea = sea_u[s] < std::numeric_limits<double>::infinity();
+    if (owner_[s] >= kSea) {
+      owner_[s] = sea ? kSea : kSky;
+    } else if (sea) {
+      const FaceLanes& face = faces_[owner_[s]];
+      const double inverse_u = std::min(std::max(planeAt(face, at_j[s], at_i[s]), face.least), face.greatest);
+      if (!(1 / inverse_u <= sea_u[s])) owner_[s] = kSea;
+    }
+  }
+}
+
+void FragmentGatherer::append(int column, int first_j, int first_i, std::vector<Fragment>& fragments) const {
+  const double centre_j = first_j + (across_ - 1) / 2.0, centre_i = first_i + (across_ - 1) / 2.0;
+  for (std::uint64_t left = all_; left != 0;) {
+    const Owner owner = owner_[static_cast<std::size_t>(std::countr_zero(left))];
+    Fragment fragment;
+    fragment.column = column;
+    fragment.face = owner >= kSea ? nullptr : &faces_[owner];
+    std::int32_t x = 0, y = 0;
+    for (std::uint64_t rest = left; rest != 0; rest &= rest - 1) {
+      const auto s = static_cast<std::size_t>(std::countr_zero(rest));
+      if (owner_[s] != owner) continue;
+      fragment.samples |= std::uint64_t{1} << s;
+      ++fragment.count;
+      x += places_[s].x;
+      y += places_[s].y;
+    }
+    left &= ~fragment.samples;
+    const double to_grid = across_ / (256.0 * fragment.count);
+    fragment.j = centre_j + x * to_grid;
+    fragment.i = centre_i + y * to_grid;
+    fragments.push_back(fragment);
+  }
+}
+
+std::uint64_t FragmentGatherer::gatherRow(int row, int columns, std::vector<Fragment>& fragments) {
+  std::uint64_t covered = 0;
+  for (int column = 0; column < columns; ++column) {
+    const int j = column * across_, i = row * across_;
+    const int first_j = first_j_ + j, first_i = first_i_ + i;
+    bool same = true;
+    for (std::size_t s = 0; s < count_; ++s) {
+      owner_[s] = tile_->at(j + static_cast<int>(s) % across_, i + static_cast<int>(s) / across_);
+      covered += owner_[s] == kNoTriangle ? 0 : 1;
+      same = same && owner_[s] == owner_[0];
+    }
+    const double centre_j = first_j + (across_ - 1) / 2.0, centre_i = first_i + (across_ - 1) / 2.0;
+    bool by_sample = sea_ == SeaCover::kPartly;
+    if (sea_ == SeaCover::kEverywhere) {
+      for (std::size_t s = 0; s < (same ? 1 : count_); ++s) {
+        if (owner_[s] == kNoTriangle) {
+          owner_[s] = kSea;
+        } else if (!isBeforeSea(faces_[owner_[s]], centre_j, centre_i)) {
+          by_sample = true;
+        }
+      }
+      if (same) std::fill_n(owner_.begin(), count_, owner_[0]);
+    }
+    if (by_sample) {
+      meetSea(first_j, first_i);
+      same = std::all_of(owner_.begin(), owner_.begin() + static_cast<std::ptrdiff_t>(count_),
+                         [&](Owner owner) { return owner == owner_[0]; });
+    }
+    if (same) {
+      fragments.push_back({column, static_cast<std::uint32_t>(count_), all_,
+                           owner_[0] >= kSea ? nullptr : &faces_[owner_[0]], centre_j, centre_i});
+    } else {
+      append(column, first_j, first_i, fragments);
+    }
+  }
+  return covered;
+}
+
+}  // namespace deltaz
