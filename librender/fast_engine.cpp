@@ -19,7 +19,7 @@ namespace deltaz {
 namespace {
 
 Result<Picture> renderInArena(const Database& database, const RenderOptions& asked, FrameScratch& scratch,
-                              FrameStatistics& statistics) {
+                              TextureCache& cache, FrameStatistics& statistics) {
   DELTAZ_TRY(checkSampling(asked));
   // All but the resolver draws the sample grid.
   const RenderOptions options = onSampleGrid(asked);
@@ -55,7 +55,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
 
   Picture picture = makePicture(asked);
   // What is seen is settled, so only the colours that are seen are read.
-  TextureStore textures(environment.color_map);
+  TextureStore textures(environment.color_map, &cache);
   const ResolverStatistics resolved =
       asked.sampling.isPlain()
           ? resolve(environment, frame, drawer.nodes(), textures, picture)
@@ -79,7 +79,7 @@ Result<Picture> FastEngine::render(const Database& database, const RenderOptions
   statistics = {};
   const FrameScratchPool::Lease scratch(scratches_);
   return drawOnThreads(options.threads,
-                       [&] { return renderInArena(database, options, *scratch, statistics); });
+                       [&] { return renderInArena(database, options, *scratch, textures_, statistics); });
 }
 
 }  // namespace deltaz

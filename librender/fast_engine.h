@@ -5,6 +5,7 @@
 
 #include "librender/frame_scratch.h"
 #include "librender/scene/render.h"
+#include "librender/scene/texture_cache.h"
 
 namespace deltaz {
 
@@ -15,6 +16,7 @@ class FastEngine : public Engine {
 
  private:
   mutable FrameScratchPool scratches_;  // one frame uses one; kept for the next
+  mutable TextureCache textures_;       // of all frames
 };
 
 }  // namespace deltaz

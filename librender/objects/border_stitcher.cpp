@@ -240,7 +240,7 @@ TerrainVertices BorderStitcher::vertices(std::uint32_t n, TerrainSplits& splits,
   const auto take = [&](Side side, int k) {
     const std::array<std::int64_t, 2> post = border.post(side, border.begin(side) + k * extent.step);
     if (const auto resolved = resolve(record.grid, post[0], post[1]))
-      result.set(border.vertex(side, k), *resolved);
+      result.setPost(border.vertex(side, k), *resolved);
   };
   std::array<bool, 4> finer_across{};
   for (const Side side : kSides) {

@@ -1,18 +1,73 @@
 #include "librender/objects/terrain_object_processor.h"
 
+#include <algorithm>
 #include <span>
 
 #include "librender/objects/terrain_vertex_lists.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "librender/objects/terrain_object_processor.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace deltaz::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, kVectorPadding>;
+constexpr D kDouble;
+constexpr hn::Rebind<float, D> kFloat;
+constexpr std::size_t kLanes = hn::MaxLanes(D());
+
+// Of all posts; the lists are padded, what is written is not.
+void gatherPositions(const ViewPositions& lists, Vector3* out) {
+  const std::size_t count = lists.count();
+  for (std::size_t k = 0; k < count; k += kLanes) {
+    Vector3 last[kLanes];
+    const bool whole = k + kLanes <= count;
+    hn::StoreInterleaved3(hn::LoadU(kDouble, &lists.u[k]), hn::LoadU(kDouble, &lists.v[k]),
+                          hn::LoadU(kDouble, &lists.w[k]), kDouble, whole ? &out[k].x : &last[0].x);
+    if (!whole) std::copy_n(last, count - k, out + k);
+  }
+}
+
+void gatherLight(const PostColors& colors, const std::vector<double>& intensity, std::size_t count,
+                 VertexLight* out) {
+  const auto load = [](const std::vector<double>& list, std::size_t k) {
+    return hn::DemoteTo(kFloat, hn::LoadU(kDouble, &list[k]));
+  };
+  for (std::size_t k = 0; k < count; k += kLanes) {
+    VertexLight last[kLanes];
+    const bool whole = k + kLanes <= count;
+    hn::StoreInterleaved4(load(colors.red, k), load(colors.green, k), load(colors.blue, k),
+                          load(intensity, k), kFloat, whole ? &out[k].red : &last[0].red);
+    if (!whole) std::copy_n(last, count - k, out + k);
+  }
+}
+
+}  // namespace
+}  // namespace deltaz::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace deltaz {
+namespace {
+
+HWY_EXPORT(gatherPositions);
+HWY_EXPORT(gatherLight);
+
+static_assert(sizeof(Vector3) == 3 * sizeof(double) && sizeof(VertexLight) == 4 * sizeof(float));
+
+}  // namespace
 
 std::vector<Vector3> terrainPositions(const TerrainTile& tile, const GridGeometry& geometry,
                                       const ViewTransform& view) {
   ViewPositions lists;
   terrainViewPositions(tile, geometry, view, lists);
-  std::vector<Vector3> position;
-  position.reserve(lists.count());
-  for (std::size_t post = 0; post < lists.count(); ++post) position.push_back(lists.at(post));
+  std::vector<Vector3> position(lists.count());
+  HWY_DYNAMIC_DISPATCH(gatherPositions)(lists, position.data());
   return position;
 }
 
@@ -46,18 +101,13 @@ TerrainVertices terrainVertices(const TerrainTile& tile, const GridGeometry& geo
   TerrainVertices vertices;
   vertices.columns = tile.columns;
   vertices.rows = tile.rows;
-  vertices.position.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) vertices.position.push_back(lists.position.at(k));
-  vertices.color = gathered(lists.color, count);
-  vertices.intensity.assign(lists.intensity.begin(),
-                            lists.intensity.begin() + static_cast<std::ptrdiff_t>(count));
-  vertices.texture.reserve(count);
-  const std::int64_t step = std::int64_t{1} << tile.level;
-  for (int j = 0; j < tile.rows; ++j) {
-    const auto row = static_cast<double>((tile.first_row + j) * step);
-    for (int i = 0; i < tile.columns; ++i)
-      vertices.texture.push_back({static_cast<double>((tile.first_column + i) * step), row});
-  }
+  vertices.position.resize(count);
+  HWY_DYNAMIC_DISPATCH(gatherPositions)(lists.position, vertices.position.data());
+  vertices.light.resize(count);
+  HWY_DYNAMIC_DISPATCH(gatherLight)(lists.color, lists.intensity, count, vertices.light.data());
+  vertices.step = static_cast<double>(std::int64_t{1} << tile.level);
+  vertices.first_post = {static_cast<double>(tile.first_column) * vertices.step,
+                         static_cast<double>(tile.first_row) * vertices.step};
   return vertices;
 }
 
@@ -69,18 +119,29 @@ TerrainVertex TerrainVertex::moved(const TerrainVertex& from, const TerrainVerte
            texture.row + (to.texture.row - from.texture.row) * weight}};
 }
 
-void TerrainVertices::set(std::size_t index, const TerrainVertex& vertex) {
+TerrainVertex TerrainVertices::at(std::size_t index) const {
+  const VertexLight& lit = light[index];
+  return {position[index], {lit.red, lit.green, lit.blue}, lit.intensity, texture(index)};
+}
+
+namespace {
+
+VertexLight lightOf(const TerrainVertex& vertex) {
+  return {static_cast<float>(vertex.color.red), static_cast<float>(vertex.color.green),
+          static_cast<float>(vertex.color.blue), static_cast<float>(vertex.intensity)};
+}
+
+}  // namespace
+
+void TerrainVertices::setPost(std::size_t index, const TerrainVertex& vertex) {
   position[index] = vertex.position;
-  color[index] = vertex.color;
-  intensity[index] = vertex.intensity;
-  texture[index] = vertex.texture;
+  light[index] = lightOf(vertex);
 }
 
 void TerrainVertices::append(const TerrainVertex& vertex) {
   position.push_back(vertex.position);
-  color.push_back(vertex.color);
-  intensity.push_back(vertex.intensity);
-  texture.push_back(vertex.texture);
+  light.push_back(lightOf(vertex));
+  appended_texture.push_back(vertex.texture);
 }
 
 namespace {
@@ -169,3 +230,4 @@ TerrainFaces terrainFaces(const TerrainTile& tile, const std::vector<Vector3>& p
 }
 
 }  // namespace deltaz
+#endif

@@ -40,19 +40,32 @@ struct TerrainVertex {
   TerrainVertex moved(const TerrainVertex& from, const TerrainVertex& to, double weight) const;
 };
 
+// Illumination times synthetic colour, linear, and illumination: in single precision, as they are drawn.
+struct VertexLight {
+  float red = 0, green = 0, blue = 0, intensity = 0;
+  bool operator==(const VertexLight&) const = default;
+};
+
 // Posts row by row from the south-west, columns * rows of them, then points that split border faces; what
 // stands at a void post is not used by any face. The lists have one entry a vertex, as of TerrainVertex.
 struct TerrainVertices {
   int columns = 0, rows = 0;
   std::vector<Vector3> position;
-  std::vector<LinearColor> color;
-  std::vector<double> intensity;
-  std::vector<GridCoordinates> texture;
+  std::vector<VertexLight> light;
+  // Posts stand where their index says: from the first one on, so many level-0 posts apart.
+  GridCoordinates first_post;
+  double step = 1;
+  std::vector<GridCoordinates> appended_texture;  // of the vertices behind the posts
 
-  TerrainVertex at(std::size_t index) const {
-    return {position[index], color[index], intensity[index], texture[index]};
+  GridCoordinates texture(std::size_t index) const {
+    const auto across = static_cast<std::size_t>(columns), posts = across * static_cast<std::size_t>(rows);
+    if (index >= posts) return appended_texture[index - posts];
+    return {first_post.column + static_cast<double>(index % across) * step,
+            first_post.row + static_cast<double>(index / across) * step};
   }
-  void set(std::size_t index, const TerrainVertex& vertex);
+  TerrainVertex at(std::size_t index) const;
+  // Pre: the vertex stands at the post's own place in the grid.
+  void setPost(std::size_t index, const TerrainVertex& vertex);
   void append(const TerrainVertex& vertex);
 };
 

@@ -63,12 +63,13 @@ void setAttributes(const PretiledNode& node, std::uint32_t number, FacePlanes& p
   }
   const TerrainVertices& vertices = node.vertices;
   for (std::size_t k = 0; k < 3; ++k) {
-    planes.color[k] = toFloats(vertices.color[face.vertex[k]]);
-    planes.intensity[k] = static_cast<float>(vertices.intensity[face.vertex[k]]);
+    const VertexLight& light = vertices.light[face.vertex[k]];
+    planes.color[k] = {light.red, light.green, light.blue};
+    planes.intensity[k] = light.intensity;
   }
-  planes.texture = vertices.texture[face.vertex[0]];
+  planes.texture = vertices.texture(face.vertex[0]);
   for (std::size_t k = 0; k < 2; ++k) {
-    const GridCoordinates& to = vertices.texture[face.vertex[k + 1]];
+    const GridCoordinates to = vertices.texture(face.vertex[k + 1]);
     planes.texture_steps[k] = {to.column - planes.texture.column, to.row - planes.texture.row};
   }
 }

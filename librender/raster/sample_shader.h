@@ -18,7 +18,8 @@
 
 namespace deltaz {
 
-inline constexpr double kShadingError = 1e-6;  // of a component, 1 = white, against the same in double
+// Of a component, 1 = white, against the same in double: a hundredth of a code where codes lie closest.
+inline constexpr double kShadingError = 4e-6;
 
 struct SampleBatch {
   static constexpr std::size_t kMost = 64;

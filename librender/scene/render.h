@@ -101,7 +101,7 @@ struct FrameStatistics {
   } samples;
   std::uint64_t bytes_read = 0;
   std::uint64_t posts_decoded = 0;
-  std::uint64_t color_tiles = 0;      // of the colour map, read
+  std::uint64_t color_tiles = 0;      // of the colour map, seen
   int level = 0, coarsest_level = 0;  // of detail, drawn: the finest and the coarsest
   double projected_error = 0;         // pixels, bound of what is drawn; infinity: none
   double transform_error = 0;         // pixels, what of that a transform other than exact may add

@@ -1,12 +1,9 @@
 #include "librender/scene/texture_store.h"
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <mutex>
 #include <utility>
-
-#include "libdb/access/color.h"
 
 namespace deltaz {
 namespace {
@@ -52,39 +49,19 @@ struct Served {
   Status status = Success{};
 };
 struct Read {
-  TextureTile tile;
+  std::shared_ptr<const TextureTile> tile;
   Status status = Success{};
 };
 
 }  // namespace
-
-void makeLinear(TextureTile& tile) {
-  static const std::array<float, 256> cover = [] {
-    std::array<float, 256> table{};
-    for (std::size_t code = 0; code < table.size(); ++code)
-      table[code] = static_cast<float>(static_cast<double>(code) / 255.0);
-    return table;
-  }();
-  static const std::array<float, 256> light = [] {
-    std::array<float, 256> table{};
-    for (std::size_t code = 0; code < table.size(); ++code)
-      table[code] = static_cast<float>(decodeSrgb(static_cast<std::uint8_t>(code)));
-    return table;
-  }();
-  tile.linear.resize(tile.texels.size());
-  for (std::size_t k = 0; k + 3 < tile.texels.size(); k += 4) {
-    const float of_texel = cover[tile.texels[k + 3]];
-    for (std::size_t c = 0; c < 3; ++c) tile.linear[k + c] = light[tile.texels[k + c]] * of_texel;
-    tile.linear[k + 3] = of_texel;
-  }
-}
 
 struct TextureStore::Contents {
   MadeOnce<Served> squares;
   MadeOnce<Read> nodes;  // by their own squares: a coarse one may serve many
 };
 
-TextureStore::TextureStore(const ColorMap* map) : map_(map), contents_(std::make_unique<Contents>()) {}
+TextureStore::TextureStore(const ColorMap* map, TextureCache* cache)
+    : map_(map), cache_(cache), contents_(std::make_unique<Contents>()) {}
 TextureStore::~TextureStore() = default;
 TextureStore::TextureStore(TextureStore&&) noexcept = default;
 TextureStore& TextureStore::operator=(TextureStore&&) noexcept = default;
@@ -99,14 +76,21 @@ const TextureTile* TextureStore::find(const TextureSquare& square) {
     if (!found.value()) return {};
     const ColorNode& node = *found.value();
     const Read& read = contents_->nodes.at(squareOf(node), [&]() -> Read {
+      const FileIdentity& file = map_->file().identity();
+      if (cache_ != nullptr) {
+        if (std::shared_ptr<const TextureTile> tile = cache_->find(file, squareOf(node)))
+          return {std::move(tile), Success{}};
+      }
       Result<std::vector<std::uint8_t>> texels = map_->tile(node);
-      if (!texels.ok()) return {{}, texels.error()};
-      TextureTile tile{squareOf(node), map_->leafCells(node.grid), std::move(texels).value(), {}};
-      makeLinear(tile);
+      if (!texels.ok()) return {nullptr, texels.error()};
+      auto tile = std::make_shared<TextureTile>();
+      *tile = {squareOf(node), map_->leafCells(node.grid), std::move(texels).value(), {}};
+      makeLinear(*tile);
+      if (cache_ != nullptr) cache_->add(file, tile);
       return {std::move(tile), Success{}};
     });
     if (!read.status.ok()) return {nullptr, read.status};
-    return {&read.tile, Success{}};
+    return {read.tile.get(), Success{}};
   });
   return served.tile;
 }

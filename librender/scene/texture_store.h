@@ -1,5 +1,5 @@
 // The memory manager of colour (report 5.6): the tiles of a colour map that a frame needs, each read when it
-// is first asked for, and once.
+// is first asked for, and once. A cache, if there is one, spares those that earlier frames have read.
 //
 // What a pixel asks for is a square: the place of a node of some level, whether or not the map has that node.
 // Where it has none, the finest coarser node that holds the place serves; all places of a square share it.
@@ -9,39 +9,17 @@
 #pragma once
 
 #include <array>
-#include <compare>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
-#include "libdb/access/color_map.h"
+#include "librender/scene/texture_cache.h"
 
 namespace deltaz {
 
-// Node (x, y) of a level of a grid, as of color_file.h.
-struct TextureSquare {
-  std::uint16_t grid = 0;
-  std::int8_t level = 0;
-  std::int32_t x = 0, y = 0;
-  auto operator<=>(const TextureSquare&) const = default;
-};
-
-struct TextureTile {
-  TextureSquare square;              // the node's own
-  int leaf_cells = 0;                // of its grid
-  std::vector<std::uint8_t> texels;  // as decodeColorTile gives them
-  // The same ready to be filtered: red, green, blue in linear light, times cover, and cover, 0 .. 1.
-  std::vector<float> linear;
-};
-
-// Fills `linear` from `texels`.
-void makeLinear(TextureTile& tile);
-
 class TextureStore {
  public:
-  // Without a map every square is empty. The map must live as long.
-  explicit TextureStore(const ColorMap* map = nullptr);
+  // Without a map every square is empty. Both must live as long.
+  explicit TextureStore(const ColorMap* map = nullptr, TextureCache* cache = nullptr);
   ~TextureStore();
   TextureStore(TextureStore&&) noexcept;
   TextureStore& operator=(TextureStore&&) noexcept;
@@ -52,11 +30,13 @@ class TextureStore {
   const TextureTile* find(const TextureSquare& square);
   // What went wrong in finding: of several errors the first in the order of the squares.
   Status status() const;
+  // Tiles that were found, read or at hand.
   std::size_t tileCount() const;
 
  private:
   struct Contents;
   const ColorMap* map_;
+  TextureCache* cache_;
   std::unique_ptr<Contents> contents_;
 };
 

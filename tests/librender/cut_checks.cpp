@@ -128,9 +128,7 @@ CutMesh meshOfCut(const Database& database, const Schedule& schedule, const View
     of_node.columns = mesh.tiles[n]->columns;
     of_node.rows = mesh.tiles[n]->rows;
     of_node.position = terrainPositions(*mesh.tiles[n], geometry, view);
-    of_node.color.resize(of_node.position.size());
-    of_node.intensity.resize(of_node.position.size());
-    of_node.texture.resize(of_node.position.size());
+    of_node.light.resize(of_node.position.size());
     processed[n] = {&*mesh.tiles[n], &vertices[n]};
   }
   const BorderStitcher stitcher(database, mesh.cut, index, seams, processed);

@@ -165,7 +165,7 @@ TEST(BorderStitcher, draws_a_part_as_it_draws_the_whole) {
         const std::vector<TerrainFace> faces = of_whole.seamFaces(k, expected);
         EXPECT_EQ(of_part.seamFaces(k, got).size(), faces.size());
         EXPECT_EQ(got.position, expected.position);
-        EXPECT_EQ(got.intensity, expected.intensity);
+        EXPECT_EQ(got.light, expected.light);
         EXPECT_EQ(splits_of_part.north, splits.north);
         EXPECT_EQ(splits_of_part.west, splits.west);
         ++drawn;

@@ -41,9 +41,8 @@ Drawn drawAll(const ViewTransform& view, const std::vector<Vector3>& position,
               const std::vector<std::array<std::uint32_t, 3>>& faces) {
   TerrainVertices vertices;
   vertices.position = position;
-  vertices.color.resize(position.size());
-  vertices.intensity.resize(position.size());
-  vertices.texture.resize(position.size());
+  vertices.light.resize(position.size());
+  vertices.appended_texture.resize(position.size());
   TerrainFaces front;
   for (const auto& face : faces) {
     TerrainFace next;

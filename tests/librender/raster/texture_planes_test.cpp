@@ -107,8 +107,8 @@ TEST_P(TexturePlanesOfFaces, are_those_of_the_reports_mapping_matrix) {
   make();
   const FacePlanes& face = face_;
   const TexturePlanes planes = texturePlanes(face);
-  EXPECT_EQ(planes.origin.column, vertices_.texture[0].column);
-  EXPECT_EQ(planes.origin.row, vertices_.texture[0].row);
+  EXPECT_EQ(planes.origin.column, vertices_.texture(0).column);
+  EXPECT_EQ(planes.origin.row, vertices_.texture(0).row);
   expectPlane(planes.column, Expected(columns_[0], columns_[0].t4 - planes.origin.column, face, view_));
   expectPlane(planes.row, Expected(columns_[1], columns_[1].t4 - planes.origin.row, face, view_));
 }
@@ -132,7 +132,7 @@ TEST_P(TexturePlanesOfFaces, lead_to_the_place_that_is_seen_and_to_its_derivativ
       EXPECT_NEAR(per_i, (at.per_i - (t.at(p) - origin) * face.inverse_u.per_i) / d,
                   10 * kRelative * (scale + std::abs(per_i)));
     };
-    const GridCoordinates& origin = vertices_.texture[0];
+    const GridCoordinates origin = vertices_.texture(0);
     expect(columns_[0], origin.column, footprint.place.column, footprint.per_j.column,
            footprint.per_i.column);
     expect(columns_[1], origin.row, footprint.place.row, footprint.per_j.row, footprint.per_i.row);

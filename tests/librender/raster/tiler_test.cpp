@@ -37,9 +37,8 @@ std::vector<PretiledNode> randomNodes(std::uint32_t seed) {
       if (isBackFacing(p[0], p[1], p[2])) std::swap(face.vertex[1], face.vertex[2]);
       faces.push_back(face);
     }
-    vertices.color.resize(vertices.position.size());
-    vertices.intensity.resize(vertices.position.size());
-    vertices.texture.resize(vertices.position.size());
+    vertices.light.resize(vertices.position.size());
+    vertices.appended_texture.resize(vertices.position.size());
     nodes.push_back(PretiledNode::ofTerrain(0, n, vertices, faces));
   }
   return nodes;
