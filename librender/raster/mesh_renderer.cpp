@@ -1,7 +1,6 @@
 #include "librender/raster/mesh_renderer.h"
 
 #include <algorithm>
-#include <hwy/cache_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unordered_map>
@@ -15,9 +14,8 @@ namespace deltaz {
 namespace {
 
 // Cells of a grid that are one item of work.
-// A row's vertices fill vectors of 16.
-constexpr int kItemColumns = 63, kItemRows = 32;
-constexpr int kRowsAhead = 3;
+// Long rows, so that the processor sees what is read next; their vertices fill vectors of 16.
+constexpr int kItemColumns = 255, kItemRows = 32;
 constexpr std::size_t kMeshletVertices = 255, kMeshletTriangles = 255;
 constexpr std::size_t kLeastMeshletsOfItem = 8, kMostItemsOfMesh = 256;
 
@@ -130,7 +128,8 @@ IndexedMesh::IndexedMesh(const MeshVertices& vertices,
 struct MeshRenderer::Worker {
   RowRoom rows[2];
   MeshletRoom meshlet_room;
-  std::array<std::uint32_t, 2 * (kMeshletTriangles + kRowPadding)> face, tiles;
+  static constexpr std::size_t kFaces = std::max<std::size_t>(kItemColumns, kMeshletTriangles);
+  std::array<std::uint32_t, 2 * (kFaces + kRowPadding)> face, tiles;
   MeshCounts counts;
   TileBuffer buffer;
   TileCounts tile_counts;
@@ -157,19 +156,8 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
     return static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(item.column);
   };
   const MeshVertices& v = mesh.vertices;
-  // A row of an item is shorter than what a processor notices by itself, so it is told.
-  const auto fetch = [&](int row) {
-    if (row > item.row + item.rows) return;
-    const std::size_t first = first_of(row);
-    for (std::size_t n = 0; n <= static_cast<std::size_t>(item.columns); n += kCacheLine / sizeof(float)) {
-      hwy::Prefetch(v.x.data() + first + n);
-      hwy::Prefetch(v.y.data() + first + n);
-      hwy::Prefetch(v.z.data() + first + n);
-    }
-  };
   const auto project = [&](int row, RowRoom& room) {
     const std::size_t first = first_of(row);
-    fetch(row + kRowsAhead);
     projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first,
                        static_cast<std::size_t>(item.columns) + 1,
                        ProjectedArrays{room.x.data(), room.y.data(), room.inverse_u.data(),
