@@ -1,9 +1,35 @@
 #include "librender/antialias/pixel_filter.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace deltaz {
+namespace {
+
+std::size_t offsetIndex(int reach, int dj, int di) {
+  return static_cast<std::size_t>((di + reach) * (2 * reach + 1) + dj + reach);
+}
+
+}  // namespace
+
+PixelFilter::PixelFilter(const Sampling& sampling)
+    : kernel_(sampling), groups_((static_cast<std::size_t>(sampling.count) + 3) / 4) {
+  const int reach = kernel_.reach();
+  for (int di = -reach; di <= reach; ++di) {
+    for (int dj = -reach; dj <= reach; ++dj) {
+      const double share = kernel_.weightOfAll(dj, di) / sampling.count;
+      for (std::size_t group = 0; group < groups_; ++group) {
+        for (std::uint32_t subset = 0; subset < kSubsets; ++subset) {
+          double excess = 0;
+          for (int s = 0; s < std::min(4, sampling.count); ++s) {
+            if ((subset >> s & 1) != 0)
+              excess += kernel_.weight(dj, di, static_cast<int>(4 * group) + s) - share;
+          }
+          excess_.push_back(static_cast<float>(excess));
+        }
+      }
+    }
+  }
+}
 
 void PixelFilter::filterRow(const MeanColors& colors, int i,
                             const std::array<std::span<float>, 3>& row) const {
@@ -37,14 +63,14 @@ void PixelFilter::addMixed(const MeanColors& colors, int di, std::span<const Mix
                            const std::array<std::span<float>, 3>& row) const {
   const int reach = kernel_.reach();
   for (const MixedFragment& fragment : fragments) {
-    const double share = static_cast<double>(std::popcount(fragment.samples)) / count_;
     for (int dj = std::max(-reach, fragment.j - (colors.width - 1)); dj <= std::min(reach, fragment.j);
          ++dj) {
-      double weight = -share * kernel_.weightOfAll(dj, di);
-      for (std::uint64_t left = fragment.samples; left != 0; left &= left - 1)
-        weight += kernel_.weight(dj, di, std::countr_zero(left));
+      const float* const excess = excess_.data() + offsetIndex(reach, dj, di) * groups_ * kSubsets;
+      float weight = 0;
+      for (std::size_t group = 0; group < groups_; ++group)
+        weight += excess[group * kSubsets + (fragment.samples >> (4 * group) & (kSubsets - 1))];
       const auto j = static_cast<std::size_t>(fragment.j - dj);
-      for (std::size_t c = 0; c < 3; ++c) row[c][j] += static_cast<float>(weight) * fragment.color[c];
+      for (std::size_t c = 0; c < 3; ++c) row[c][j] += weight * fragment.color[c];
     }
   }
 }

@@ -36,7 +36,7 @@ struct MeanColors {
 
 class PixelFilter {
  public:
-  explicit PixelFilter(const Sampling& sampling) : kernel_(sampling), count_(sampling.count) {}
+  explicit PixelFilter(const Sampling& sampling);
 
   // Row i of the picture, linear; each of `row` has room for its width.
   void filterRow(const MeanColors& colors, int i, const std::array<std::span<float>, 3>& row) const;
@@ -46,7 +46,11 @@ class PixelFilter {
                 const std::array<std::span<float>, 3>& row) const;
 
   FilterKernel kernel_;
-  int count_;
+  // By offset to the right and down, by group of four samples, by which of these are meant: how much more
+  // they weigh than their share of all of the pixel's.
+  static constexpr std::size_t kSubsets = 16;
+  std::size_t groups_;
+  std::vector<float> excess_;
 };
 
 }  // namespace deltaz

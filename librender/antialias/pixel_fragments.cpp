@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace deltaz {
 namespace {
@@ -20,7 +21,13 @@ FragmentGatherer::FragmentGatherer(const Environment& environment, const Samplin
       across_(grid_.across()),
       count_(static_cast<std::size_t>(sampling.count)),
       all_(sampling.count == kMost ? ~std::uint64_t{0} : (std::uint64_t{1} << sampling.count) - 1),
-      places_(samplePlaces(sampling.count, sampling.pattern)) {}
+      places_(samplePlaces(sampling.count, sampling.pattern)) {
+  // Pixels lie within blocks, or are whole blocks.
+  static_assert(kBlockSide % 2 == 0 && kTileSide % 8 == 0);
+  for (int s = 0; s < sampling.count; ++s) {
+    index_[static_cast<std::size_t>(s)] = static_cast<std::uint16_t>(tileIndex(s % across_, s / across_));
+  }
+}
 
 void FragmentGatherer::enter(const SettledTile& tile, std::span<const FaceLanes> faces, int tile_j,
                              int tile_i) {
@@ -28,12 +35,20 @@ void FragmentGatherer::enter(const SettledTile& tile, std::span<const FaceLanes>
   faces_ = faces;
   first_j_ = tile_j * kTileSide;
   first_i_ = tile_i * kTileSide;
+  sea_of_tile_ = seaCover(environment_.sea.terms(), environment_.view, first_j_ - 0.5, first_i_ - 0.5,
+                          first_j_ + kTileSide - 0.5, first_i_ + kTileSide - 0.5);
+}
+
+void FragmentGatherer::enterRow(int first_i) {
   const SeaTerms& sea = environment_.sea.terms();
-  sea_ = seaCover(sea, environment_.view, first_j_ - 0.5, first_i_ - 0.5, first_j_ + kTileSide - 0.5,
-                  first_i_ + kTileSide - 0.5);
+  sea_ = sea_of_tile_;
+  if (sea_ == SeaCover::kPartly) {
+    sea_ = seaCover(sea, environment_.view, first_j_ - 0.5, first_i - 0.5, first_j_ + kTileSide - 0.5,
+                    first_i + across_ - 0.5);
+  }
   if (sea_ == SeaCover::kEverywhere) {
-    constexpr double kMiddle = (kTileSide - 1) / 2.0;
-    bound_ = seaBound(sea, environment_.view, first_j_ + kMiddle, first_i_ + kMiddle);
+    bound_ =
+        seaBound(sea, environment_.view, first_j_ + (kTileSide - 1) / 2.0, first_i + (across_ - 1) / 2.0);
   }
 }
 
@@ -96,36 +111,55 @@ void FragmentGatherer::append(int column, int first_j, int first_i, std::vector<
 }
 
 std::uint64_t FragmentGatherer::gatherRow(int row, int columns, std::vector<Fragment>& fragments) {
+  const int first_i = first_i_ + row * across_;
+  const double to_centre = (across_ - 1) / 2.0, centre_i = first_i + to_centre;
+  enterRow(first_i);
+  const std::uint32_t* const owners = tile_->owners().empty() ? nullptr : tile_->owners().data();
   std::uint64_t covered = 0;
   for (int column = 0; column < columns; ++column) {
-    const int j = column * across_, i = row * across_;
-    const int first_j = first_j_ + j, first_i = first_i_ + i;
+    const int first_j = first_j_ + column * across_;
+    const double centre_j = first_j + to_centre;
+    // What the first sample shows, and whether all of them show it.
+    Owner first = kNoTriangle;
     bool same = true;
-    for (std::size_t s = 0; s < count_; ++s) {
-      owner_[s] = tile_->at(j + static_cast<int>(s) % across_, i + static_cast<int>(s) / across_);
-      covered += owner_[s] == kNoTriangle ? 0 : 1;
-      same = same && owner_[s] == owner_[0];
-    }
-    const double centre_j = first_j + (across_ - 1) / 2.0, centre_i = first_i + (across_ - 1) / 2.0;
-    bool by_sample = sea_ == SeaCover::kPartly;
-    if (sea_ == SeaCover::kEverywhere) {
-      for (std::size_t s = 0; s < (same ? 1 : count_); ++s) {
-        if (owner_[s] == kNoTriangle) {
-          owner_[s] = kSea;
-        } else if (!isBeforeSea(faces_[owner_[s]], centre_j, centre_i)) {
-          by_sample = true;
+    if (owners != nullptr) {
+      const std::uint32_t* const of_pixel = owners + tileIndex(column * across_, row * across_);
+      first = of_pixel[0];
+      std::uint32_t differing = 0;
+      for (std::size_t s = 1; s < count_; ++s) differing |= of_pixel[index_[s]] ^ first;
+      same = differing == 0;
+      if (!same) {
+        for (std::size_t s = 0; s < count_; ++s) {
+          owner_[s] = of_pixel[index_[s]];
+          covered += owner_[s] == kNoTriangle ? 0 : 1;
         }
       }
-      if (same) std::fill_n(owner_.begin(), count_, owner_[0]);
+    }
+    if (same) covered += first == kNoTriangle ? 0 : count_;
+
+    bool by_sample = sea_ == SeaCover::kPartly;
+    if (sea_ == SeaCover::kEverywhere) {
+      const auto before_sea = [&](Owner& owner) {
+        if (owner != kNoTriangle) return isBeforeSea(faces_[owner], centre_j, centre_i);
+        owner = kSea;
+        return true;
+      };
+      if (same) {
+        by_sample = !before_sea(first);
+      } else {
+        for (std::size_t s = 0; s < count_; ++s) by_sample = !before_sea(owner_[s]) || by_sample;
+      }
     }
     if (by_sample) {
+      if (same) std::fill_n(owner_.begin(), count_, first);
       meetSea(first_j, first_i);
+      first = owner_[0];
       same = std::all_of(owner_.begin(), owner_.begin() + static_cast<std::ptrdiff_t>(count_),
-                         [&](Owner owner) { return owner == owner_[0]; });
+                         [&](Owner owner) { return owner == first; });
     }
     if (same) {
       fragments.push_back({column, static_cast<std::uint32_t>(count_), all_,
-                           owner_[0] >= kSea ? nullptr : &faces_[owner_[0]], centre_j, centre_i});
+                           first >= kSea ? nullptr : &faces_[first], centre_j, centre_i});
     } else {
       append(column, first_j, first_i, fragments);
     }

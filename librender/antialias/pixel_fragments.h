@@ -41,6 +41,8 @@ class FragmentGatherer {
   static constexpr Owner kSky = kNoTriangle, kSea = kNoTriangle - 1;
   static constexpr int kMost = 64;
 
+  // Whether and how the sea may come before faces in a row of pixels of the tile.
+  void enterRow(int first_i);
   // Puts the sea before what lies behind it, sample by sample.
   void meetSea(int first_j, int first_i);
   bool isBeforeSea(const FaceLanes& face, double j, double i) const;
@@ -52,12 +54,13 @@ class FragmentGatherer {
   std::size_t count_;
   std::uint64_t all_;
   std::vector<SamplePlace> places_;
+  std::array<std::uint16_t, kMost> index_{};  // of a sample in TileBuffer's order, from its pixel's first
   const SettledTile* tile_ = nullptr;
   std::span<const FaceLanes> faces_;
-  int first_j_ = 0, first_i_ = 0;  // of the tile on the sample grid
-  SeaCover sea_ = SeaCover::kPartly;
-  SeaBound bound_;                    // where the sea is everywhere
-  std::array<Owner, kMost> owner_{};  // of the pixel's samples
+  int first_j_ = 0, first_i_ = 0;                                       // of the tile on the sample grid
+  SeaCover sea_of_tile_ = SeaCover::kPartly, sea_ = SeaCover::kPartly;  // sea_: of the row
+  SeaBound bound_;                                                      // where the sea is everywhere
+  std::array<Owner, kMost> owner_{};                                    // of the pixel's samples
 };
 
 }  // namespace deltaz

@@ -23,6 +23,8 @@ class SettledTile {
  public:
   // What is seen at pixel (j, i) of the tile, counted from its first: index into faces, or kNoTriangle.
   std::uint32_t at(int j, int i) const { return owner_.empty() ? kNoTriangle : owner_[tileIndex(j, i)]; }
+  // The same of all pixels, in the order of TileBuffer; empty if nothing is seen.
+  const std::vector<std::uint32_t>& owners() const { return owner_; }
   // The faces that are seen.
   const std::vector<SeenFace>& faces() const { return faces_; }
 
