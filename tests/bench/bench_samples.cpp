@@ -4,8 +4,9 @@
 // polygons: root mean squares in percent of the white. `flicker` is what the light of a thin wire, 0.4 pixel
 // wide, does while the wire moves over a pixel in 32 steps, where exact integrals keep it the same: its
 // standard deviation in percent. Times are medians of whole frames, 1280 x 720: of real ground
-// (samples/mt_rainier.tif at 1 pixel, unless an area is named; the mean of three views), and of ground whose
-// faces are hundreds of pixels large, where filling is all there is. Settings take turns.
+// (samples/mt_rainier.tif at 1 pixel, unless an area is named; the mean of two views), and of ground whose
+// faces are hundreds of pixels large, where filling is all there is. Settings take turns, and one of one
+// sample goes before each, so that ratios are medians over pairs drawn at one time.
 //
 // A second table says what the filters themselves do, drawn exactly: over how many pixels an upright edge
 // rises from 10 to 90 percent, how far it overshoots, and how much of its peak a thin upright wire loses on
@@ -33,19 +34,20 @@ namespace {
 struct Settings {
   bool smoke = false, json = false, times = true;
   std::string area;
-  int repeats = 15;
+  int repeats = 7;
 };
 
 struct Row {
   Sampling sampling;
   std::vector<double> errors;  // of the kinds of scenes, then of all
   double flicker = 0;
-  double ground_ms = 0, fill_ms = 0;
+  double ground_ms = 0, fill_ms = 0, ground_ratio = 1, fill_ratio = 1;
 };
 
-std::vector<Sampling> samplings() {
+std::vector<Sampling> samplings(const Settings& settings) {
   std::vector<Sampling> all;
   for (const int count : kSampleCounts) {
+    if (settings.smoke && count > 4) continue;
     for (const SamplePattern pattern : {SamplePattern::kOrdered, SamplePattern::kRotated}) {
       if (count == 1 && pattern == SamplePattern::kRotated) continue;
       for (const FilterKind filter : kFilterKinds) all.push_back({count, pattern, filter});
@@ -111,15 +113,14 @@ Camera cameraAt(double latitude, double longitude, double height, double heading
   return camera;
 }
 
-// Over the southern part at eye level and from 500 m, and steeply down on the middle.
+// Over the southern part from 500 m, and steeply down on the middle.
 Result<std::vector<Camera>> viewsOf(const Database& database, const Settings& settings) {
   const AreaHeader& area = database.area();
   const double south = area.south + 0.2 * (area.north - area.south);
   const double middle = (area.south + area.north) / 2, longitude = (area.west + area.east) / 2;
   DELTAZ_TRY_ASSIGN(const std::optional<double> ground, groundHeight(database, south, longitude));
   const double height = ground.value_or(area.highest_height);
-  return std::vector<Camera>{cameraAt(south, longitude, height + 2, 0, 0, settings),
-                             cameraAt(south, longitude, height + 500, 0, -5, settings),
+  return std::vector<Camera>{cameraAt(south, longitude, height + 500, 0, -5, settings),
                              cameraAt(middle, longitude, area.highest_height + 10000, 0, -60, settings)};
 }
 
@@ -137,30 +138,50 @@ Status measureTimes(std::vector<Row>& rows, const Settings& settings) {
   Camera over = cameraOver(coarse.database, 0.5, 0.5, 20, 30, -35, views[0].width, views[0].height);
   over.field_of_view = 60;
 
+  struct Scene {
+    const Database* database;
+    Camera camera;
+  };
+  std::vector<Scene> scenes;
+  for (const Camera& view : views) scenes.push_back({&database, view});
+  scenes.push_back({&coarse.database, over});
+
   const auto engine = makeEngine(EngineKind::kFast);
-  std::vector<std::vector<double>> ground(rows.size() * views.size()), fill(rows.size());
+  const auto time = [&](const Scene& scene, const Sampling& sampling) -> Result<double> {
+    RenderOptions options;
+    options.camera = scene.camera;
+    options.sampling = sampling;
+    FrameStatistics statistics;
+    DELTAZ_TRY(engine->render(*scene.database, options, statistics));
+    return statistics.milliseconds.total;
+  };
+  struct Times {
+    std::vector<double> milliseconds, ratio;
+  };
+  std::vector<Times> times(rows.size() * scenes.size());
   const int rounds = settings.smoke ? 1 : settings.repeats + 1;
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      RenderOptions options;
-      options.sampling = rows[k].sampling;
-      FrameStatistics statistics;
-      const auto time = [&](const Database& of, const Camera& camera, std::vector<double>& to) -> Status {
-        options.camera = camera;
-        DELTAZ_TRY(engine->render(of, options, statistics));
+      for (std::size_t n = 0; n < scenes.size(); ++n) {
+        DELTAZ_TRY_ASSIGN(const double plain, time(scenes[n], {}));
+        DELTAZ_TRY_ASSIGN(const double sampled, time(scenes[n], rows[k].sampling));
         // The first round warms what there is to be warmed.
-        if (round > 0 || settings.smoke) to.push_back(statistics.milliseconds.total);
-        return Success{};
-      };
-      for (std::size_t v = 0; v < views.size(); ++v)
-        DELTAZ_TRY(time(database, views[v], ground[k * views.size() + v]));
-      DELTAZ_TRY(time(coarse.database, over, fill[k]));
+        if (round == 0 && !settings.smoke) continue;
+        times[k * scenes.size() + n].milliseconds.push_back(sampled);
+        times[k * scenes.size() + n].ratio.push_back(sampled / plain);
+      }
     }
   }
+  const double count = static_cast<double>(views.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (std::size_t v = 0; v < views.size(); ++v)
-      rows[k].ground_ms += spreadOf(ground[k * views.size() + v]).median / static_cast<double>(views.size());
-    rows[k].fill_ms = spreadOf(fill[k]).median;
+    Row& row = rows[k];
+    row.ground_ratio = 0;
+    for (std::size_t n = 0; n < views.size(); ++n) {
+      row.ground_ms += spreadOf(times[k * scenes.size() + n].milliseconds).median / count;
+      row.ground_ratio += spreadOf(times[k * scenes.size() + n].ratio).median / count;
+    }
+    row.fill_ms = spreadOf(times[k * scenes.size() + views.size()].milliseconds).median;
+    row.fill_ratio = spreadOf(times[k * scenes.size() + views.size()].ratio).median;
   }
   return Success{};
 }
@@ -190,13 +211,6 @@ FilterTraits traitsOf(FilterKind filter) {
 }
 
 void printText(const std::vector<Row>& rows, const Settings& settings) {
-  double ground = 1, fill = 1;
-  for (const Row& row : rows) {
-    if (row.sampling.isPlain()) {
-      ground = row.ground_ms;
-      fill = row.fill_ms;
-    }
-  }
   fmt::print("| samples | pattern | filter | edges | wires | horizon | fan | all | flicker |");
   if (settings.times) fmt::print(" ground ms | | fill ms | |");
   fmt::print("\n|--:|---|---|--:|--:|--:|--:|--:|--:|");
@@ -209,8 +223,8 @@ void printText(const std::vector<Row>& rows, const Settings& settings) {
     for (const double error : row.errors) fmt::print(" {:.2f} |", 100 * error);
     fmt::print(" {:.2f} |", 100 * row.flicker);
     if (settings.times) {
-      fmt::print(" {:.1f} | {:.2f}x | {:.1f} | {:.2f}x |", row.ground_ms, row.ground_ms / ground, row.fill_ms,
-                 row.fill_ms / fill);
+      fmt::print(" {:.1f} | {:.2f}x | {:.1f} | {:.2f}x |", row.ground_ms, row.ground_ratio, row.fill_ms,
+                 row.fill_ratio);
     }
     fmt::print("\n");
   }
@@ -232,8 +246,11 @@ void printJson(const std::vector<Row>& rows, const Settings& settings) {
         k == 0 ? "" : ",", row.sampling.count, samplePatternName(row.sampling.pattern),
         filterName(row.sampling.filter), row.errors[0], row.errors[1], row.errors[2], row.errors[3],
         row.errors[4], row.flicker);
-    if (settings.times)
-      fmt::print(", \"ground_ms\": {:.3f}, \"fill_ms\": {:.3f}", row.ground_ms, row.fill_ms);
+    if (settings.times) {
+      fmt::print(
+          ", \"ground_ms\": {:.3f}, \"ground_ratio\": {:.3f}, \"fill_ms\": {:.3f}, \"fill_ratio\": {:.3f}",
+          row.ground_ms, row.ground_ratio, row.fill_ms, row.fill_ratio);
+    }
     fmt::print("}}");
   }
   fmt::print("],\n \"filters\": [");
@@ -261,7 +278,7 @@ bool errorsFall(const std::vector<Row>& rows) {
 
 int run(const Settings& settings) {
   std::vector<Row> rows;
-  for (const Sampling& sampling : samplings()) rows.push_back({sampling, {}});
+  for (const Sampling& sampling : samplings(settings)) rows.push_back({sampling, {}});
   measureErrors(rows, settings);
   if (settings.times) {
     if (const Status timed = measureTimes(rows, settings); !timed.ok()) {
