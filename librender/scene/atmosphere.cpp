@@ -18,8 +18,9 @@ namespace deltaz {
 namespace {
 
 constexpr double kMolecularHeight = 8000;  // metres
-constexpr double kAerosolHeight =
-    kMolecularHeight / 4;                 // so that its density is the fourth power of the other's
+constexpr double kPerMolecularHeight = 1 / kMolecularHeight;
+// The aerosol's layer is a fourth as high, so that its density is the fourth power of the other's.
+constexpr double kAerosolRises = 4;
 constexpr double kMolecularRed = 2.5e-6;  // 1/m at height 0; green twice, blue four times as much
 constexpr double kAerosol = 2.0e-5;       // 1/m at height 0
 // Air has a floor, in metres: no dry land lies lower, but facets of a whole globe sag by kilometres, within a
@@ -27,7 +28,7 @@ constexpr double kAerosol = 2.0e-5;       // 1/m at height 0
 constexpr double kLowestGround = -500;
 // For nearly equal heights the quotient of differences loses its digits; the mean of both ends differs from
 // it by rise^2 / 12.
-constexpr double kLevelRise = 1e-4;  // in scale heights
+constexpr double kLevelRise = 1e-4;  // in scale heights of molecules
 
 }  // namespace
 }  // namespace deltaz
@@ -79,14 +80,6 @@ void skyColors(const AtmosphereTerms& terms, const RayLists& rays, const ColorLi
   }
 }
 
-// meanDensity from the eye on; `height_scale` in metres.
-V meanDensities(double height1, double density1, V height2, V density2, double height_scale) {
-  const V rise = hn::Div(hn::Sub(height2, set(height1)), set(height_scale));
-  const V level = hn::Div(hn::Add(set(density1), density2), set(2.0));
-  const V quotient = hn::Div(hn::Sub(set(density1), density2), rise);
-  return hn::IfThenElse(hn::Lt(hn::Abs(rise), set(kLevelRise)), level, quotient);
-}
-
 // Atmosphere::throughHaze, operation by operation.
 void hazeColors(const AtmosphereTerms& terms, const RayLists& rays, const double* depths,
                 const ColorLists& colors) {
@@ -106,14 +99,20 @@ void hazeColors(const AtmosphereTerms& terms, const RayLists& rays, const double
     const V above =
         hn::Mul(hn::Sqrt(hn::Add(across2, z2)), hn::Sub(set(1.0), hn::Div(set(1.0), hn::Sqrt(q))));
     const V height = hn::Max(set(kLowestGround), above);
-    const V density = exponentials(d, hn::Div(hn::Neg(height), set(kMolecularHeight)));
-    const V density2 = hn::Mul(density, density);
+    const V density = exponentials(d, hn::Mul(hn::Neg(height), set(kPerMolecularHeight)));
+    const V density2 = hn::Mul(density, density), density4 = hn::Mul(density2, density2);
+    const V rise = hn::Mul(hn::Sub(height, set(terms.eye_height)), set(kPerMolecularHeight));
+    const auto is_level = hn::Lt(hn::Abs(rise), set(kLevelRise));
+    const V per_rise = hn::Div(set(1.0), rise);
+    const auto mean = [&](double at_eye, V there, V per_own_rise) {
+      return hn::IfThenElse(is_level, hn::Mul(hn::Add(set(at_eye), there), set(0.5)),
+                            hn::Mul(hn::Sub(set(at_eye), there), per_own_rise));
+    };
     const V molecular =
-        hn::Mul(hn::Mul(set(kMolecularRed), distance),
-                meanDensities(terms.eye_height, terms.eye_density, height, density, kMolecularHeight));
-    const V aerosol = hn::Mul(hn::Mul(set(kAerosol), distance),
-                              meanDensities(terms.eye_height, eye_density2 * eye_density2, height,
-                                            hn::Mul(density2, density2), kAerosolHeight));
+        hn::Mul(hn::Mul(set(kMolecularRed), distance), mean(terms.eye_density, density, per_rise));
+    const V aerosol =
+        hn::Mul(hn::Mul(set(kAerosol), distance),
+                mean(eye_density2 * eye_density2, density4, hn::Mul(per_rise, set(1 / kAerosolRises))));
     const V grey = exponentials(d, hn::Neg(aerosol));
     const V red = exponentials(d, hn::Neg(molecular)), green = hn::Mul(red, red),
             blue = hn::Mul(green, green);
@@ -141,13 +140,6 @@ HWY_EXPORT(hazeColors);
 constexpr LinearColor kHaze{0.60, 0.70, 0.82};
 constexpr LinearColor kZenith{0.060, 0.170, 0.480};
 
-// Mean density of a layer between two heights of densities d1, d2, where d = exp(-h / scale).
-double meanDensity(double h1, double d1, double h2, double d2, double scale) {
-  const double rise = (h2 - h1) / scale;
-  if (std::abs(rise) < kLevelRise) return (d1 + d2) / 2;
-  return (d1 - d2) / rise;
-}
-
 }  // namespace
 
 Atmosphere::Atmosphere(const EllipsoidShape& ellipsoid, const ViewTransform& view, const Vector3& to_sun) {
@@ -160,7 +152,7 @@ Atmosphere::Atmosphere(const EllipsoidShape& ellipsoid, const ViewTransform& vie
   const GeodeticPoint eye = toGeodetic(ellipsoid, view.eye);
   terms_.up = upVector(rowConstants(ellipsoid, eye.latitude), columnConstants(eye.longitude));
   terms_.eye_height = heightOf(terms_.eye);
-  terms_.eye_density = exponential(-terms_.eye_height / kMolecularHeight);
+  terms_.eye_density = exponential(-terms_.eye_height * kPerMolecularHeight);
   const double ratio = a / (a + std::max(terms_.eye_height, 0.0));
   terms_.sine_of_horizon = -std::sqrt(1 - ratio * ratio);
 
@@ -188,14 +180,19 @@ LinearColor Atmosphere::sky(const Vector3& ray) const {
 LinearColor Atmosphere::throughHaze(const LinearColor& color, const Vector3& ray, double u) const {
   const double distance = length(ray) * u;
   const double height = std::max(kLowestGround, heightOf(terms_.eye + ray * u));
-  const double density = exponential(-height / kMolecularHeight);
+  const double density = exponential(-height * kPerMolecularHeight);
   const double density2 = density * density, eye_density2 = terms_.eye_density * terms_.eye_density;
-  const double molecular =
-      kMolecularRed * distance *
-      meanDensity(terms_.eye_height, terms_.eye_density, height, density, kMolecularHeight);
-  const double aerosol = kAerosol * distance *
-                         meanDensity(terms_.eye_height, eye_density2 * eye_density2, height,
-                                     density2 * density2, kAerosolHeight);
+  // Mean density of a layer between two heights of densities d1, d2, where d = exp(-h / scale).
+  const double rise = (height - terms_.eye_height) * kPerMolecularHeight;
+  const bool is_level = std::abs(rise) < kLevelRise;
+  const double per_rise = 1 / rise;
+  const auto mean = [&](double d1, double d2, double per_own_rise) {
+    return is_level ? (d1 + d2) * 0.5 : (d1 - d2) * per_own_rise;
+  };
+  const double molecular = kMolecularRed * distance * mean(terms_.eye_density, density, per_rise);
+  const double aerosol =
+      kAerosol * distance *
+      mean(eye_density2 * eye_density2, density2 * density2, per_rise * (1 / kAerosolRises));
   const double grey = exponential(-aerosol);
   const double red = exponential(-molecular), green = red * red, blue = green * green;
   return {terms_.haze_color.red + (color.red - terms_.haze_color.red) * (grey * red),
