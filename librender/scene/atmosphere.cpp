@@ -30,6 +30,9 @@ constexpr double kLowestGround = -500;
 // it by rise^2 / 12.
 constexpr double kLevelRise = 1e-4;  // in scale heights of molecules
 
+// Samples whose intermediate results are kept at a time.
+constexpr std::size_t kHazeAtOnce = 64;
+
 }  // namespace
 }  // namespace deltaz
 #endif
@@ -80,28 +83,36 @@ void skyColors(const AtmosphereTerms& terms, const RayLists& rays, const ColorLi
   }
 }
 
-// Atmosphere::throughHaze, operation by operation.
+// Atmosphere::throughHaze, operation by operation. `rays` are at most kHazeAtOnce.
 void hazeColors(const AtmosphereTerms& terms, const RayLists& rays, const double* depths,
                 const ColorLists& colors) {
   const D d;
+  const std::size_t lanes = hn::Lanes(d), count = (rays.count + lanes - 1) / lanes * lanes;
   const double eye_density2 = terms.eye_density * terms.eye_density;
-  for (std::size_t k = 0; k < rays.count; k += hn::Lanes(d)) {
+  alignas(64) double lengths[kHazeAtOnce], heights[kHazeAtOnce], densities[kHazeAtOnce];
+  alignas(64) double left[2 * kHazeAtOnce];  // of grey and of red light
+  for (std::size_t k = 0; k < count; k += lanes) {
     const Vectors ray = loadRays(rays, k);
     const V u = hn::LoadU(d, depths + k);
-    const V distance = hn::Mul(hn::Sqrt(dotOf(ray, ray)), u);
+    hn::StoreU(hn::Mul(hn::Sqrt(dotOf(ray, ray)), u), d, lengths + k);
     const Vectors p{hn::Add(set(terms.eye.x), hn::Mul(ray.x, u)),
                     hn::Add(set(terms.eye.y), hn::Mul(ray.y, u)),
                     hn::Add(set(terms.eye.z), hn::Mul(ray.z, u))};
-    const V x2 = hn::Mul(p.x, p.x), y2 = hn::Mul(p.y, p.y), z2 = hn::Mul(p.z, p.z);
-    const V across2 = hn::Add(x2, y2);
+    const V across2 = hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), z2 = hn::Mul(p.z, p.z);
     const V q =
         hn::Add(hn::Mul(across2, set(terms.inverse_a_squared)), hn::Mul(z2, set(terms.inverse_b_squared)));
     const V above =
         hn::Mul(hn::Sqrt(hn::Add(across2, z2)), hn::Sub(set(1.0), hn::Div(set(1.0), hn::Sqrt(q))));
     const V height = hn::Max(set(kLowestGround), above);
-    const V density = exponentials(d, hn::Mul(hn::Neg(height), set(kPerMolecularHeight)));
+    hn::StoreU(height, d, heights + k);
+    hn::StoreU(hn::Mul(hn::Neg(height), set(kPerMolecularHeight)), d, densities + k);
+  }
+  exponentials(d, densities, count);
+  for (std::size_t k = 0; k < count; k += lanes) {
+    const V distance = hn::LoadU(d, lengths + k), density = hn::LoadU(d, densities + k);
     const V density2 = hn::Mul(density, density), density4 = hn::Mul(density2, density2);
-    const V rise = hn::Mul(hn::Sub(height, set(terms.eye_height)), set(kPerMolecularHeight));
+    const V rise =
+        hn::Mul(hn::Sub(hn::LoadU(d, heights + k), set(terms.eye_height)), set(kPerMolecularHeight));
     const auto is_level = hn::Lt(hn::Abs(rise), set(kLevelRise));
     const V per_rise = hn::Div(set(1.0), rise);
     const auto mean = [&](double at_eye, V there, V per_own_rise) {
@@ -113,11 +124,15 @@ void hazeColors(const AtmosphereTerms& terms, const RayLists& rays, const double
     const V aerosol =
         hn::Mul(hn::Mul(set(kAerosol), distance),
                 mean(eye_density2 * eye_density2, density4, hn::Mul(per_rise, set(1 / kAerosolRises))));
-    const V grey = exponentials(d, hn::Neg(aerosol));
-    const V red = exponentials(d, hn::Neg(molecular)), green = hn::Mul(red, red),
-            blue = hn::Mul(green, green);
-    const auto store = [&](double haze, V left, double* color) {
-      const V change = hn::Mul(hn::Sub(hn::LoadU(d, color + k), set(haze)), hn::Mul(grey, left));
+    hn::StoreU(hn::Neg(aerosol), d, left + k);
+    hn::StoreU(hn::Neg(molecular), d, left + count + k);
+  }
+  exponentials(d, left, 2 * count);
+  for (std::size_t k = 0; k < count; k += lanes) {
+    const V grey = hn::LoadU(d, left + k), red = hn::LoadU(d, left + count + k);
+    const V green = hn::Mul(red, red), blue = hn::Mul(green, green);
+    const auto store = [&](double haze, V light, double* color) {
+      const V change = hn::Mul(hn::Sub(hn::LoadU(d, color + k), set(haze)), hn::Mul(grey, light));
       hn::StoreU(hn::Add(set(haze), change), d, color + k);
     };
     store(terms.haze_color.red, red, colors.red);
@@ -205,7 +220,11 @@ void Atmosphere::skies(const RayLists& rays, const ColorLists& colors) const {
 }
 
 void Atmosphere::throughHaze(const RayLists& rays, const double* u, const ColorLists& colors) const {
-  HWY_DYNAMIC_DISPATCH(hazeColors)(terms_, rays, u, colors);
+  for (std::size_t k = 0; k < rays.count; k += kHazeAtOnce) {
+    HWY_DYNAMIC_DISPATCH(hazeColors)
+    (terms_, {rays.x + k, rays.y + k, rays.z + k, std::min(kHazeAtOnce, rays.count - k)}, u + k,
+     {colors.red + k, colors.green + k, colors.blue + k});
+  }
 }
 
 }  // namespace deltaz
