@@ -48,6 +48,35 @@ TEST(Sweep, measures_every_setting_in_every_view) {
   }
 }
 
+// With many samples for reference; and the ground stays where it is.
+TEST(Sweep, more_samples_cost_colour_errors_only) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  SweepRequest request;
+  request.views = {{"ground", cameraOver(area.database, 0.4, 0.1, 300, 10, -5, 160, 100)}};
+  for (const int samples : {1, 4, 16}) {
+    SweepSetting setting;
+    setting.samples = samples;
+    request.settings.push_back(setting);
+  }
+  request.reference_tolerance = 1;
+  request.reference_samples = 64;
+  request.repeats = 1;
+  double last = -1;
+  request.progress = [&](double fraction) {
+    EXPECT_GT(fraction, last);
+    EXPECT_LT(fraction, 1);
+    last = fraction;
+  };
+  const Database* const databases[] = {&area.database};
+  const auto swept = sweep(databases, request);
+  ASSERT_TRUE(swept.ok());
+  const std::vector<SweepRow>& rows = swept.value()[0].rows;
+  EXPECT_GT(rows[0].picture.mean_square, 2 * rows[1].picture.mean_square);
+  EXPECT_GT(rows[1].picture.mean_square, 2 * rows[2].picture.mean_square);
+  EXPECT_GT(rows[2].picture.mean_square, 0);
+  for (const SweepRow& row : rows) EXPECT_EQ(row.displacement.largest, rows[0].displacement.largest);
+}
+
 // Errors are those of pictures and do not depend on how often or on how many threads they were drawn.
 TEST(Sweep, errors_are_the_same_for_any_number_of_threads) {
   const MemoryDatabase area = makeDatabase(smallArea());
