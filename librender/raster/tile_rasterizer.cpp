@@ -20,11 +20,10 @@
 #define DELTAZ_TILE_RASTERIZER_ONCE
 namespace deltaz {
 
-// Triangles that touch at most so many blocks each way are taken block by block out of one list, so that no
-// loop ends at a triangle's end, which processors guess badly.
-inline constexpr std::int32_t kSmallSide = 4;
-inline constexpr std::size_t kNeighbours = kSmallSide * kSmallSide;
-static_assert(kNeighbours == kBlockPixels);
+// Blocks are looked at 4 x 4 at a time.
+inline constexpr std::int32_t kPatchSide = 4;
+inline constexpr std::size_t kPatchBlocks = kPatchSide * kPatchSide;
+static_assert(kPatchBlocks == kBlockPixels);
 
 // What the pixels of a triangle's blocks share: edge functions and 1/U from a block's first pixel.
 struct alignas(64) PixelSteps {
@@ -32,9 +31,12 @@ struct alignas(64) PixelSteps {
   float inverse_u[kBlockPixels];
 };
 
-// Blocks of small triangles that are to be drawn, in order.
+// Blocks that are to be drawn, in order: of several triangles, so that no loop ends at a triangle's end,
+// which processors guess badly for small ones.
 struct alignas(64) BlockList {
-  static constexpr std::size_t kRoom = kSetUpBatch * kNeighbours + kBlockPixels;
+  // Drawn when it has so many: what they show is known to the triangles after them.
+  static constexpr std::size_t kLong = 128;
+  static constexpr std::size_t kRoom = kLong + 2 * kPatchBlocks;
   std::int32_t edge[3][kRoom];  // at the block's first pixel
   float inverse_u[kRoom];
   std::int32_t block[kRoom], triangle[kRoom];  // the latter in the batch
@@ -144,21 +146,21 @@ class TileRasterizer {
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t blocks = batch.blocks[t];
       const auto first_j = static_cast<std::int32_t>(blocks & 0xFF),
-                 first_i = static_cast<std::int32_t>(blocks >> 8 & 0xFF),
-                 last_j = static_cast<std::int32_t>(blocks >> 16 & 0xFF),
-                 last_i = static_cast<std::int32_t>(blocks >> 24);
+                 first_i = static_cast<std::int32_t>(blocks >> 8 & 0xFF);
+      const auto columns = static_cast<std::int32_t>(blocks >> 16 & 0xFF) - first_j + 1,
+                 rows = static_cast<std::int32_t>(blocks >> 24) - first_i + 1;
       setSteps(batch, t, steps[t]);
-      if (last_j - first_j < kSmallSide && last_i - first_i < kSmallSide) {
-        hidden[t] = listBlocks(batch, t, steps[t], first_j, first_i, last_j - first_j + 1,
-                               last_i - first_i + 1, list);
-        continue;
+      // Most triangles touch no other patch than their first.
+      hidden[t] =
+          listPatch(batch, t, steps[t], first_i * kBlocksAcross + first_j,
+                    {batch.at_first_block[0][t], batch.at_first_block[1][t], batch.at_first_block[2][t]},
+                    batch.at_first[t], columns, rows, list);
+      if (columns > kPatchSide || rows > kPatchSide) {
+        hidden[t] |= listOtherPatches<kCut>(batch, t, steps, first_i * kBlocksAcross + first_j, columns, rows,
+                                            list, covers);
+      } else if (list.count >= BlockList::kLong) {
+        drawList<kCut>(batch, steps, list, covers);
       }
-      // In the order they came.
-      drawList<kCut>(batch, steps, list, covers);
-      Outcome outcome;
-      drawLarge<kCut>(batch, t, steps[t], first_j, first_i, last_j, last_i, outcome);
-      covers[t] = outcome.covers;
-      hidden[t] = outcome.hidden;
     }
     drawList<kCut>(batch, steps, list, covers);
     for (std::size_t t = 0; t < count; ++t)
@@ -218,17 +220,40 @@ class TileRasterizer {
     }
   }
 
-  // Appends those blocks of the neighbourhood that the triangle may show in. True if some were left out
-  // because it lies behind what they show.
-  HWY_INLINE bool listBlocks(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
-                             std::int32_t first_j, std::int32_t first_i, std::int32_t columns,
-                             std::int32_t rows, BlockList& list) const {
-    const Ints first_block = hn::Set(kInt, first_i * kBlocksAcross + first_j);
+  template <bool kCut>
+  HWY_NOINLINE bool listOtherPatches(const SetUpTriangles& batch, std::size_t t, const PixelSteps* steps,
+                                     std::int32_t first_block, std::int32_t columns, std::int32_t rows,
+                                     BlockList& list, std::uint8_t* covers) {
+    bool hidden = false;
+    for (std::int32_t i = 0; i < rows; i += kPatchSide) {
+      for (std::int32_t j = 0; j < columns; j += kPatchSide) {
+        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, covers);
+        if (i == 0 && j == 0) continue;
+        const auto edge = [&](std::size_t k) {
+          return batch.at_first_block[k][t] + kBlockSide * (batch.per_j[k][t] * j + batch.per_i[k][t] * i);
+        };
+        const float inverse_u =
+            batch.at_first[t] + (batch.gradient_x[t] * static_cast<float>(kBlockSide * j) +
+                                 batch.gradient_y[t] * static_cast<float>(kBlockSide * i));
+        hidden |= listPatch(batch, t, steps[t], first_block + i * kBlocksAcross + j,
+                            {edge(0), edge(1), edge(2)}, inverse_u, columns - j, rows - i, list);
+      }
+    }
+    return hidden;
+  }
+
+  // Appends those blocks of a patch that the triangle may show in. True if some were left out because it lies
+  // behind what they show. `edge` and `u`: at the patch's first pixel. `columns`, `rows`: of the triangle's
+  // box, from the patch's first block.
+  HWY_INLINE bool listPatch(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
+                            std::int32_t first_block, const std::array<std::int32_t, 3>& edge, float u,
+                            std::int32_t columns, std::int32_t rows, BlockList& list) const {
+    const Ints first_of_patch = hn::Set(kInt, first_block);
     const Ints beyond_j = hn::Set(kInt, columns), beyond_i = hn::Set(kInt, rows);
     const bool moved = tile_.offsets != nullptr;
     auto hidden = hn::FirstN(kInt, 0);
     std::size_t count = list.count;
-    for (std::size_t v = 0; v < kNeighbours; v += kLanes) {
+    for (std::size_t v = 0; v < kPatchBlocks; v += kLanes) {
       auto touched =
           hn::And(hn::Lt(hn::Load(kInt, kLaneJ + v), beyond_j), hn::Lt(hn::Load(kInt, kLaneI + v), beyond_i));
       // A step of a block is four of a pixel's centre.
@@ -236,11 +261,11 @@ class TileRasterizer {
       Ints greatest = hn::Zero(kInt);
       for (std::size_t k = 0; k < 3; ++k) {
         const Ints of_pixel = moved ? edgeSteps(batch, t, k, v) : hn::Load(kInt, steps.edge[k] + v);
-        at_block[k] = hn::Add(hn::Set(kInt, batch.at_first_block[k][t]), hn::ShiftLeft<2>(of_pixel));
+        at_block[k] = hn::Add(hn::Set(kInt, edge[k]), hn::ShiftLeft<2>(of_pixel));
         greatest = hn::Or(greatest, hn::Add(at_block[k], hn::Set(kInt, batch.rise[k][t])));
       }
       touched = hn::And(touched, hn::Gt(greatest, hn::Set(kInt, -1)));
-      const Ints block = hn::Add(first_block, hn::Load(kInt, kNeighbour + v));
+      const Ints block = hn::Add(first_of_patch, hn::Load(kInt, kNeighbour + v));
       const Floats there = hn::GatherIndex(kFloat, buffer_.least.data(), block);
       const auto nearer = hn::RebindMask(kInt, hn::Gt(hn::Set(kFloat, batch.greatest[t]), there));
       hidden = hn::Or(hidden, hn::AndNot(nearer, touched));
@@ -250,8 +275,7 @@ class TileRasterizer {
       const Floats of_pixel =
           moved ? planeSteps(batch, t, hn::Load(kFloat, kLaneX + v), hn::Load(kFloat, kLaneY + v))
                 : hn::Load(kFloat, steps.inverse_u + v);
-      const Floats inverse_u =
-          hn::Add(hn::Set(kFloat, batch.at_first[t]), hn::Mul(hn::Set(kFloat, 4.0F), of_pixel));
+      const Floats inverse_u = hn::Add(hn::Set(kFloat, u), hn::Mul(hn::Set(kFloat, 4.0F), of_pixel));
       compaction.store(kFloat, inverse_u, list.inverse_u + count);
       hn::StoreU(hn::Set(kInt, static_cast<std::int32_t>(t)), kInt, list.triangle + count);
       compaction.store(kInt, block, list.block + count);
@@ -268,66 +292,13 @@ class TileRasterizer {
       const auto t = static_cast<std::size_t>(list.triangle[n]),
                  block = static_cast<std::size_t>(list.block[n]);
       const std::int32_t edge[3] = {list.edge[0][n], list.edge[1][n], list.edge[2][n]};
-      covers[t] |= drawBlock<false, kCut>(batch, t, steps[t], edge, list.inverse_u[n], block);
+      covers[t] |= drawBlock<kCut>(batch, t, steps[t], edge, list.inverse_u[n], block);
     }
     list.count = 0;
   }
 
-  // Row by row of blocks, all 16 blocks of a row at once: which lie outside an edge, which inside all of
-  // them, which behind what is there.
+  // `edge` and `u`: at the block's first pixel. True if it covers a sample.
   template <bool kCut>
-  HWY_INLINE void drawLarge(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
-                            std::int32_t first_j, std::int32_t first_i, std::int32_t last_j,
-                            std::int32_t last_i, Outcome& outcome) {
-    const std::uint32_t in_box = ((1U << (last_j - first_j + 1)) - 1) << first_j;
-    std::int32_t corner[3];  // the edge functions at the tile's first pixel of the row
-    for (std::size_t k = 0; k < 3; ++k)
-      corner[k] = batch.at_first_block[k][t] - batch.per_j[k][t] * (first_j * kBlockSide);
-    const float step_x = batch.gradient_x[t] * kBlockSide, step_y = batch.gradient_y[t] * kBlockSide;
-    const Floats nearest = hn::Set(kFloat, batch.greatest[t]);
-    for (std::int32_t block_i = first_i; block_i <= last_i; ++block_i) {
-      const float row_u = batch.at_first[t] + step_y * static_cast<float>(block_i - first_i);
-      alignas(64) std::int32_t at_block[3][kBlocksAcross];
-      std::uint32_t outside = 0, across = 0, nearer = 0;
-      for (std::size_t v = 0; v < kBlocksAcross; v += kLanes) {
-        Ints low = hn::Zero(kInt), high = low;
-        const Ints block_j = hn::Iota(kInt, static_cast<std::int32_t>(v));
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::int32_t per_j = batch.per_j[k][t], per_i = batch.per_i[k][t];
-          const Ints value =
-              hn::Add(hn::Set(kInt, corner[k]), hn::Mul(hn::Set(kInt, per_j * kBlockSide), block_j));
-          hn::Store(value, kInt, at_block[k] + v);
-          const std::int32_t rise = batch.rise[k][t], fall = (kBlockSide - 1) * (per_j + per_i) - rise;
-          low = hn::Or(low, hn::Add(value, hn::Set(kInt, fall)));
-          high = hn::Or(high, hn::Add(value, hn::Set(kInt, rise)));
-        }
-        outside |= TriangleSetUp::bits(hn::Lt(high, hn::Zero(kInt))) << v;
-        across |= TriangleSetUp::bits(hn::Lt(low, hn::Zero(kInt))) << v;
-        const Floats there = hn::Load(kFloat, buffer_.least.data() + block_i * kBlocksAcross + v);
-        nearer |= TriangleSetUp::bits(hn::RebindMask(kInt, hn::Gt(nearest, there))) << v;
-      }
-      for (std::size_t k = 0; k < 3; ++k) corner[k] += batch.per_i[k][t] * kBlockSide;
-      const std::uint32_t touched = in_box & ~outside;
-      outcome.hidden |= (touched & ~nearer) != 0;
-      if constexpr (kCut) across = 0xFFFFFFFF;
-      for (std::uint32_t left = touched & nearer; left != 0; left &= left - 1) {
-        const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        const float u = row_u + step_x * static_cast<float>(static_cast<std::int32_t>(j) - first_j);
-        const std::size_t block = static_cast<std::size_t>(block_i) * kBlocksAcross + j;
-        const std::int32_t edge[3] = {at_block[0][j], at_block[1][j], at_block[2][j]};
-        if ((across >> j & 1) != 0) {
-          outcome.covers |= drawBlock<false, kCut>(batch, t, steps, edge, u, block);
-        } else {
-          outcome.covers = true;
-          drawBlock<true, kCut>(batch, t, steps, edge, u, block);
-        }
-      }
-    }
-  }
-
-  // `kFull`: all samples of the block are inside. `edge` and `u`: at the block's first pixel. True if it
-  // covers a sample.
-  template <bool kFull, bool kCut>
   HWY_INLINE bool drawBlock(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
                             const std::int32_t (&edge)[3], float u, std::size_t block) {
     float* const depth = buffer_.inverse_u.data() + block * kBlockPixels;
@@ -341,23 +312,20 @@ class TileRasterizer {
     auto all_pass = hn::FirstN(kInt, kLanes);
     Floats nearest = hn::Set(kFloat, 3.0e38F);
     for (std::size_t v = 0; v < kVectors; ++v) {
-      auto covered = hn::FirstN(kInt, kLanes);
-      if constexpr (!kFull) {
-        const auto at = [&](std::size_t k) {
-          return hn::Add(hn::Set(kInt, edge[k]), hn::Load(kInt, steps.edge[k] + v * kLanes));
-        };
-        covered = hn::Gt(hn::Or(hn::Or(at(0), at(1)), at(2)), hn::Set(kInt, -1));
-        if constexpr (kCut) {
-          const auto block_j = static_cast<std::int32_t>(block % kBlocksAcross),
-                     block_i = static_cast<std::int32_t>(block / kBlocksAcross);
-          covered = hn::And(
-              covered,
-              hn::And(
-                  hn::Lt(hn::Load(kInt, kLaneJ + v * kLanes), hn::Set(kInt, columns_ - block_j * kBlockSide)),
-                  hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows_ - block_i * kBlockSide))));
-        }
-        any_covered = hn::Or(any_covered, covered);
+      const auto at = [&](std::size_t k) {
+        return hn::Add(hn::Set(kInt, edge[k]), hn::Load(kInt, steps.edge[k] + v * kLanes));
+      };
+      auto covered = hn::Gt(hn::Or(hn::Or(at(0), at(1)), at(2)), hn::Set(kInt, -1));
+      if constexpr (kCut) {
+        const auto block_j = static_cast<std::int32_t>(block % kBlocksAcross),
+                   block_i = static_cast<std::int32_t>(block / kBlocksAcross);
+        covered = hn::And(
+            covered,
+            hn::And(
+                hn::Lt(hn::Load(kInt, kLaneJ + v * kLanes), hn::Set(kInt, columns_ - block_j * kBlockSide)),
+                hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows_ - block_i * kBlockSide))));
       }
+      any_covered = hn::Or(any_covered, covered);
       tested_ = hn::Add(tested_, hn::IfThenElseZero(covered, one));
       const Floats old = hn::Load(kFloat, depth + v * kLanes);
       const Floats value =
@@ -385,7 +353,7 @@ class TileRasterizer {
         hn::BlendedStore(hn::Set(kUnsigned, number), hn::RebindMask(kUnsigned, pass[v]), kUnsigned,
                          owner + v * kLanes);
     }
-    return kFull || !hn::AllFalse(kInt, any_covered);
+    return !hn::AllFalse(kInt, any_covered);
   }
 
   const Tile& tile_;
