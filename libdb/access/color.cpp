@@ -1,5 +1,6 @@
 #include "libdb/access/color.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -11,33 +12,39 @@ double linearOfEncoded(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-// Encoding by comparison instead of by std::pow: a code's lower border in linear light, and for each of
-// kSteps equal intervals of linear light, none of which holds two borders, the code at its beginning.
+// Encoding by comparison instead of by std::pow, in integers: a code's lower border in linear light, and for
+// each of kSteps equal intervals of linear light, none of which holds two borders, the code at its beginning.
 struct EncodingTable {
-  static constexpr int kSteps = 4096;
-  static constexpr double kWhite = 1 - 1.0 / 8192;  // has the code of 1
-  std::array<double, 257> border{};                 // code c covers border[c] .. border[c + 1]
+  static constexpr int kSteps = 4096, kScaleBits = 30, kStepBits = kScaleBits - 12;
+  std::array<std::uint32_t, 257> border{};  // code c covers border[c] .. border[c + 1], in 2^-30
   std::array<std::uint8_t, kSteps> first_code{};
 
   EncodingTable() {
+    constexpr double kScale = 1 << kScaleBits;
     border[0] = 0;
-    for (int code = 1; code < 256; ++code) {
-      border[static_cast<std::size_t>(code)] = linearOfEncoded((code - 0.5) / 255.0);
-    }
-    border[256] = 2;  // above every clamped value
+    for (int code = 1; code < 256; ++code)
+      border[static_cast<std::size_t>(code)] =
+          static_cast<std::uint32_t>(std::ceil(linearOfEncoded((code - 0.5) / 255.0) * kScale));
+    border[256] = 0xFFFFFFFF;
     std::size_t code = 0;
-    for (int step = 0; step < kSteps; ++step) {
-      while (static_cast<double>(step) / kSteps >= border[code + 1]) ++code;
-      first_code[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(code);
+    for (std::uint32_t step = 0; step < kSteps; ++step) {
+      while (step << kStepBits >= border[code + 1]) ++code;
+      first_code[step] = static_cast<std::uint8_t>(code);
     }
   }
 
-  std::uint8_t encode(double linear) const {
-    // Also of what is not a number.
-    const double kept = linear > 0 ? linear < kWhite ? linear : kWhite : 0;
-    const std::size_t code = first_code[static_cast<std::size_t>(kept * kSteps)];
-    return static_cast<std::uint8_t>(code + (kept >= border[code + 1] ? 1 : 0));
+  // Linear light in 2^-30, kept within 0 and just below 1; 0 of what is not a number.
+  static std::int32_t scaled(double linear) {
+    constexpr double kScale = 1 << kScaleBits, kWhite = kScale - 1;
+    const double value = linear * kScale, kept = value > 0 ? value : 0;
+    return static_cast<std::int32_t>(kept < kWhite ? kept : kWhite);
   }
+  std::uint8_t codeOf(std::int32_t light) const {
+    const auto value = static_cast<std::uint32_t>(light);
+    const std::size_t code = first_code[value >> kStepBits];
+    return static_cast<std::uint8_t>(code + (value >= border[code + 1] ? 1 : 0));
+  }
+  std::uint8_t encode(double linear) const { return codeOf(scaled(linear)); }
 };
 
 const EncodingTable& encodingTable() {
@@ -54,10 +61,20 @@ std::uint8_t encodeSrgb(double linear) {
 void encodeSrgb(const double* red, const double* green, const double* blue, std::size_t count,
                 std::uint8_t* codes) {
   const EncodingTable& table = encodingTable();
-  for (std::size_t n = 0; n < count; ++n) {
-    codes[3 * n] = table.encode(red[n]);
-    codes[3 * n + 1] = table.encode(green[n]);
-    codes[3 * n + 2] = table.encode(blue[n]);
+  constexpr std::size_t kAtOnce = 64;
+  std::array<std::array<std::int32_t, kAtOnce>, 3> light;
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t left = std::min(kAtOnce, count - first);
+    const auto scale = [&](const double* linear, std::array<std::int32_t, kAtOnce>& out) {
+      for (std::size_t n = 0; n < left; ++n) out[n] = EncodingTable::scaled(linear[first + n]);
+    };
+    scale(red, light[0]);
+    scale(green, light[1]);
+    scale(blue, light[2]);
+    std::uint8_t* const to = codes + 3 * first;
+    for (std::size_t n = 0; n < left; ++n) {
+      for (std::size_t c = 0; c < 3; ++c) to[3 * n + c] = table.codeOf(light[c][n]);
+    }
   }
 }
 

@@ -56,12 +56,18 @@ constexpr HalfTag kHalf;
 
 // ViewTransform::ray, operation by operation.
 void makeRays(const ViewTransform& view, const SampleBatch& batch, BatchLists& lists) {
+  const auto tangent = [&](Doubles pixel, double centre) {
+    return hn::Div(hn::Sub(pixel, hn::Set(kDouble, centre)), hn::Set(kDouble, view.pixels));
+  };
+  // Mostly all samples are of one row of the picture.
+  Doubles row = hn::Load(kDouble, batch.i), down = tangent(row, view.centre_i);
   for (std::size_t n = 0; n < batch.count; n += kDoubleLanes) {
-    const auto tangent = [&](const double* pixel, double centre) {
-      return hn::Div(hn::Sub(hn::Load(kDouble, pixel + n), hn::Set(kDouble, centre)),
-                     hn::Set(kDouble, view.pixels));
-    };
-    const Doubles to_right = tangent(batch.j, view.centre_j), down = tangent(batch.i, view.centre_i);
+    const Doubles to_right = tangent(hn::Load(kDouble, batch.j + n), view.centre_j);
+    const Doubles own_row = hn::Load(kDouble, batch.i + n);
+    if (!hn::AllTrue(kDouble, hn::Eq(own_row, row))) {
+      row = own_row;
+      down = tangent(row, view.centre_i);
+    }
     const auto along = [&](double forward, double of_right, double of_down) {
       return hn::Add(hn::Add(hn::Set(kDouble, forward), hn::Mul(hn::Set(kDouble, of_right), to_right)),
                      hn::Mul(hn::Set(kDouble, of_down), down));
@@ -361,12 +367,12 @@ void SampleShader::shade(SampleBatch& batch) {
   environment_.sea.depths(rays, lists.sea_u);
   HWY_DYNAMIC_DISPATCH(placeSamples)(batch, !mappings_.empty(), lists);
 
-  bool any_sea = false, any_sky = false, all_sky = true;
+  bool any_face = false, any_sea = false, any_sky = false;
   for (std::size_t n = 0; n < batch.count; ++n) {
     const FaceLanes* const face = batch.face[n];
     if (face != nullptr && lists.face_u[n] <= lists.sea_u[n]) {
       batch.surface[n] = face->surface;
-      all_sky = false;
+      any_face = true;
       continue;
     }
     batch.face[n] = nullptr;
@@ -374,7 +380,6 @@ void SampleShader::shade(SampleBatch& batch) {
     batch.surface[n] = sea ? Surface::kSea : Surface::kSky;
     any_sea = any_sea || sea;
     any_sky = any_sky || !sea;
-    all_sky = all_sky && !sea;
   }
   const ColorLists colors{batch.red, batch.green, batch.blue};
   alignas(64) SampleBatch::List<double> red, green, blue;
@@ -387,14 +392,14 @@ void SampleShader::shade(SampleBatch& batch) {
       batch.blue[n] = blue[n];
     }
   };
-  if (!all_sky) {
-    HWY_DYNAMIC_DISPATCH(lightSamples)(batch, mappings_, textures_, lists);
-    if (any_sea) {
-      environment_.sea.colors(rays, lists.sea_u, other);
-      take(Surface::kSea);
-    }
-    environment_.atmosphere.throughHaze(rays, batch.u, colors);
+  if (any_face) HWY_DYNAMIC_DISPATCH(lightSamples)(batch, mappings_, textures_, lists);
+  if (any_sea && !any_face) {
+    environment_.sea.colors(rays, lists.sea_u, colors);
+  } else if (any_sea) {
+    environment_.sea.colors(rays, lists.sea_u, other);
+    take(Surface::kSea);
   }
+  if (any_face || any_sea) environment_.atmosphere.throughHaze(rays, batch.u, colors);
   if (any_sky) {
     environment_.atmosphere.skies(rays, other);
     take(Surface::kSky);
