@@ -1,6 +1,6 @@
 """kill -9 at random moments: a target is absent or complete, and the next run cleans up.
 
-DELTAZ_KILLS is the number of kills of each case (20; half of it where a case has two states or edits), DELTAZ_KILL_SEED makes a run repeatable.
+DELTAZ_KILLS is the number of kills of each case (8; half of it where a case has two states or edits), DELTAZ_KILL_SEED makes a run repeatable.
 """
 import os
 import random
@@ -10,7 +10,7 @@ import time
 
 from harness import RAINIER, build, case, main, no_leftovers, program, require, run, small_dem
 
-KILLS = int(os.environ.get("DELTAZ_KILLS", "20"))
+KILLS = int(os.environ.get("DELTAZ_KILLS", "8"))
 SEED = os.environ.get("DELTAZ_KILL_SEED", str(time.time_ns()))
 
 

@@ -17,6 +17,7 @@
 #include "libdb/check/check.h"
 #include "libdb/export/export_terrain.h"
 #include "libdb/source/elevation_source.h"
+#include "tests/support/bit_flips.h"
 #include "tests/support/container_surgery.h"
 #include "tests/support/database_editor.h"
 #include "tests/support/synthetic_grid.h"
@@ -161,10 +162,10 @@ class Damage : public testing::Test {
 
 TEST_F(Damage, every_flipped_bit_is_reported_and_never_read_as_data) {
   for (const std::string& path : subject().paths) {
-    const std::size_t bits = subject().files.bytes(path).size() * 8;
-    Trial(baseName(path) + ", every bit flipped")
-        .run(bits, levelFor(path),
-             [&](MemoryFileSystem& files, std::size_t bit) { files.flipBit(path, bit); });
+    const std::size_t flips = subject().files.bytes(path).size() * flipsOfByte();
+    Trial(baseName(path) + ", bits of every byte flipped")
+        .run(flips, levelFor(path),
+             [&](MemoryFileSystem& files, std::size_t n) { files.flipBit(path, flippedBit(n)); });
   }
 }
 

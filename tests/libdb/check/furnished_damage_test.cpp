@@ -16,6 +16,7 @@
 #include "libdb/access/database.h"
 #include "libdb/check/check.h"
 #include "tests/support/asset_editor.h"
+#include "tests/support/bit_flips.h"
 #include "tests/support/container_surgery.h"
 #include "tests/support/fault_file_system.h"
 #include "tests/support/furnished_area.h"
@@ -144,8 +145,9 @@ class FurnishedDamage : public testing::TestWithParam<FileRole> {
 };
 
 TEST_P(FurnishedDamage, every_flipped_bit_is_reported_and_never_read_as_data) {
-  Trial(named("every bit flipped")).run(bytes().size() * 8, [&](MemoryFileSystem& files, std::size_t bit) {
-    files.flipBit(path_, bit);
+  const std::size_t flips = bytes().size() * flipsOfByte();
+  Trial(named("bits of every byte flipped")).run(flips, [&](MemoryFileSystem& files, std::size_t n) {
+    files.flipBit(path_, flippedBit(n));
     return true;
   });
 }
