@@ -37,6 +37,14 @@ void FragmentGatherer::enter(const SettledTile& tile, std::span<const FaceLanes>
   first_i_ = tile_i * kTileSide;
   sea_of_tile_ = seaCover(environment_.sea.terms(), environment_.view, first_j_ - 0.5, first_i_ - 0.5,
                           first_j_ + kTileSide - 0.5, first_i_ + kTileSide - 0.5);
+  faces_are_nearer_ = false;
+  if (sea_of_tile_ != SeaCover::kEverywhere) return;
+  constexpr double kHalf = kTileSide / 2.0;
+  const SeaBound bound =
+      seaBound(environment_.sea.terms(), environment_.view, first_j_ + kHalf - 0.5, first_i_ + kHalf - 0.5);
+  const double nearest_sea = bound.value + (std::abs(bound.per_j) + std::abs(bound.per_i)) * kHalf;
+  faces_are_nearer_ = std::all_of(faces_.begin(), faces_.end(),
+                                  [&](const FaceLanes& face) { return face.least > nearest_sea; });
 }
 
 void FragmentGatherer::enterRow(int first_i) {
@@ -46,7 +54,7 @@ void FragmentGatherer::enterRow(int first_i) {
     sea_ = seaCover(sea, environment_.view, first_j_ - 0.5, first_i - 0.5, first_j_ + kTileSide - 0.5,
                     first_i + across_ - 0.5);
   }
-  if (sea_ == SeaCover::kEverywhere) {
+  if (sea_ == SeaCover::kEverywhere && !faces_are_nearer_) {
     bound_ =
         seaBound(sea, environment_.view, first_j_ + (kTileSide - 1) / 2.0, first_i + (across_ - 1) / 2.0);
   }
@@ -140,7 +148,7 @@ std::uint64_t FragmentGatherer::gatherRow(int row, int columns, std::vector<Frag
     bool by_sample = sea_ == SeaCover::kPartly;
     if (sea_ == SeaCover::kEverywhere) {
       const auto before_sea = [&](Owner& owner) {
-        if (owner != kNoTriangle) return isBeforeSea(faces_[owner], centre_j, centre_i);
+        if (owner != kNoTriangle) return faces_are_nearer_ || isBeforeSea(faces_[owner], centre_j, centre_i);
         owner = kSea;
         return true;
       };

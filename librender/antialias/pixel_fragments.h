@@ -60,7 +60,8 @@ class FragmentGatherer {
   int first_j_ = 0, first_i_ = 0;                                       // of the tile on the sample grid
   SeaCover sea_of_tile_ = SeaCover::kPartly, sea_ = SeaCover::kPartly;  // sea_: of the row
   SeaBound bound_;                                                      // where the sea is everywhere
-  std::array<Owner, kMost> owner_{};                                    // of the pixel's samples
+  bool faces_are_nearer_ = false;     // all of the tile, than the sea anywhere in it
+  std::array<Owner, kMost> owner_{};  // of the pixel's samples
 };
 
 }  // namespace deltaz

@@ -1,6 +1,7 @@
 #include "librender/antialias/sample_resolver.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -15,12 +16,14 @@
 namespace deltaz {
 namespace {
 
-// What a fragment shows.
-struct Shaded {
-  LinearColor color;
-  double u = 0;
-  Surface surface = Surface::kSky;
-  const FaceLanes* face = nullptr;
+// A row of pixels of a tile: what its fragments make of it.
+struct PixelRow {
+  std::array<double, kTileSide> red{}, green{}, blue{};  // the means of the pixels' samples
+  // Of the fragment that the sample nearest to the pixel's centre belongs to.
+  std::array<double, kTileSide> u{};
+  std::array<Surface, kTileSide> surface{};
+  std::array<const FaceLanes*, kTileSide> face{};
+  std::array<bool, kTileSide> mixed{};  // of several fragments
 };
 
 // What a worker keeps from tile to tile.
@@ -32,29 +35,9 @@ struct Worker {
   SampleBatch batch;
   std::vector<FaceLanes> faces;
   std::vector<Fragment> fragments;
-  std::vector<Shaded> shaded;  // of each fragment
+  PixelRow row;
   ResolverStatistics counts;
 };
-
-void shadeFragments(Worker& worker) {
-  SampleBatch& batch = worker.batch;
-  worker.shaded.clear();
-  for (std::size_t first = 0; first < worker.fragments.size(); first += SampleBatch::kMost) {
-    batch.count = std::min(SampleBatch::kMost, worker.fragments.size() - first);
-    for (std::size_t n = 0; n < batch.count; ++n) {
-      const Fragment& fragment = worker.fragments[first + n];
-      batch.j[n] = fragment.j;
-      batch.i[n] = fragment.i;
-      batch.face[n] = fragment.face;
-    }
-    worker.shader.shade(batch);
-    for (std::size_t n = 0; n < batch.count; ++n) {
-      worker.counts.shaded += batch.face[n] == nullptr ? 0 : 1;
-      worker.shaded.push_back(
-          {{batch.red[n], batch.green[n], batch.blue[n]}, batch.u[n], batch.surface[n], batch.face[n]});
-    }
-  }
-}
 
 class SampleResolver {
  public:
@@ -66,6 +49,8 @@ class SampleResolver {
         grid_(sampling),
         central_(std::uint64_t{1} << centralSample(samplePlaces(sampling.count, sampling.pattern))),
         picture_(picture) {
+    for (int n = 1; n <= sampling.count; ++n)
+      share_[static_cast<std::size_t>(n)] = static_cast<double>(n) / sampling.count;
     if (sampling.filter != FilterKind::kBox)
       colors_ = std::make_unique<MeanColors>(picture.width, picture.height);
   }
@@ -106,71 +91,104 @@ class SampleResolver {
     for (int row = 0; row < rows; ++row) {
       worker.fragments.clear();
       worker.counts.covered += worker.gatherer.gatherRow(row, columns, worker.fragments);
-      shadeFragments(worker);
       const int i = tile_i * side + row;
-      for (std::size_t first = 0; first < worker.fragments.size();) {
-        std::size_t end = first + 1;
-        while (end < worker.fragments.size() &&
-               worker.fragments[end].column == worker.fragments[first].column)
-          ++end;
-        storePixel(worker, first, end, tile_j * side + worker.fragments[first].column, i);
-        first = end;
+      shadeRow(worker, tile_j * side, i);
+      storeRow(worker.row, tile_j * side, columns, i);
+    }
+  }
+
+  // Of the fragments of a row of pixels, the first of them pixel (first_j, i) of the picture.
+  void shadeRow(Worker& worker, int first_j, int i) {
+    SampleBatch& batch = worker.batch;
+    PixelRow& row = worker.row;
+    const std::span<const Fragment> fragments = worker.fragments;
+    std::int32_t last_column = -1;
+    for (std::size_t first = 0; first < fragments.size(); first += SampleBatch::kMost) {
+      batch.count = std::min(SampleBatch::kMost, fragments.size() - first);
+      for (std::size_t n = 0; n < batch.count; ++n) {
+        const Fragment& fragment = fragments[first + n];
+        batch.j[n] = fragment.j;
+        batch.i[n] = fragment.i;
+        batch.face[n] = fragment.face;
+      }
+      worker.shader.shade(batch);
+      for (std::size_t n = 0; n < batch.count; ++n) {
+        const Fragment& fragment = fragments[first + n];
+        const auto column = static_cast<std::size_t>(fragment.column);
+        worker.counts.shaded += batch.face[n] == nullptr ? 0 : 1;
+        const double share = share_[fragment.count];
+        if (fragment.column != last_column) {
+          last_column = fragment.column;
+          row.mixed[column] = share != 1;
+          row.red[column] = row.green[column] = row.blue[column] = 0;
+        }
+        row.red[column] += batch.red[n] * share;
+        row.green[column] += batch.green[n] * share;
+        row.blue[column] += batch.blue[n] * share;
+        if ((fragment.samples & central_) != 0) {
+          row.u[column] = batch.u[n];
+          row.surface[column] = batch.surface[n];
+          row.face[column] = batch.face[n];
+        }
+        if (colors_ != nullptr && share != 1) {
+          colors_->mixed[static_cast<std::size_t>(i)].push_back(
+              {first_j + fragment.column,
+               fragment.samples,
+               {static_cast<float>(batch.red[n]), static_cast<float>(batch.green[n]),
+                static_cast<float>(batch.blue[n])}});
+        }
       }
     }
   }
 
-  // Of the fragments first .. end - 1.
-  void storePixel(const Worker& worker, std::size_t first, std::size_t end, int j, int i) {
-    const std::size_t pixel =
-        static_cast<std::size_t>(i) * static_cast<std::size_t>(picture_.width) + static_cast<std::size_t>(j);
-    LinearColor mean = worker.shaded[first].color;
-    std::size_t central = first;
-    if (end - first > 1) {
-      mean = {};
-      for (std::size_t n = first; n < end; ++n) {
-        const Fragment& fragment = worker.fragments[n];
-        mean = mean + worker.shaded[n].color * (static_cast<double>(fragment.count) / sampling_.count);
-        if ((fragment.samples & central_) != 0) central = n;
-      }
+  void storeRow(const PixelRow& row, int first_j, int columns, int i) {
+    const std::size_t first = static_cast<std::size_t>(i) * static_cast<std::size_t>(picture_.width) +
+                              static_cast<std::size_t>(first_j);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(columns); ++n) {
+      const std::size_t pixel = first + n;
+      const double u = row.mixed[n] ? depthAtCentre(row.face[n], row.surface[n], row.u[n],
+                                                    first_j + static_cast<int>(n), i)
+                                    : row.u[n];
+      picture_.depth[pixel] = static_cast<float>(u);
+      picture_.surface[pixel] = row.surface[n];
+      if (!picture_.triangle.empty() && row.face[n] != nullptr)
+        picture_.triangle[pixel] = row.face[n]->identity;
     }
-    const Shaded& nearest = worker.shaded[central];
-    const double u = end - first > 1 ? depthAtCentre(nearest, j, i) : nearest.u;
-    if (!picture_.triangle.empty() && nearest.face != nullptr)
-      picture_.triangle[pixel] = nearest.face->identity;
-    storeSeen(nearest.surface, u, mean, pixel, picture_);
-    if (colors_ == nullptr) return;
-    colors_->planes[0][pixel] = static_cast<float>(mean.red);
-    colors_->planes[1][pixel] = static_cast<float>(mean.green);
-    colors_->planes[2][pixel] = static_cast<float>(mean.blue);
-    if (end - first == 1) return;
-    for (std::size_t n = first; n < end; ++n) {
-      const LinearColor& color = worker.shaded[n].color;
-      colors_->mixed[static_cast<std::size_t>(i)].push_back(
-          {j,
-           worker.fragments[n].samples,
-           {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue)}});
+    if (colors_ == nullptr) {
+      for (std::size_t n = 0; n < static_cast<std::size_t>(columns); ++n) {
+        picture_.rgb[3 * (first + n)] = encodeSrgb(row.red[n]);
+        picture_.rgb[3 * (first + n) + 1] = encodeSrgb(row.green[n]);
+        picture_.rgb[3 * (first + n) + 2] = encodeSrgb(row.blue[n]);
+      }
+      return;
+    }
+    for (std::size_t n = 0; n < static_cast<std::size_t>(columns); ++n) {
+      colors_->planes[0][first + n] = static_cast<float>(row.red[n]);
+      colors_->planes[1][first + n] = static_cast<float>(row.green[n]);
+      colors_->planes[2][first + n] = static_cast<float>(row.blue[n]);
     }
   }
 
   // Of what a fragment shows, at the middle of the pixel.
-  double depthAtCentre(const Shaded& shaded, int j, int i) const {
+  double depthAtCentre(const FaceLanes* seen, Surface surface, double sampled_u, int j, int i) const {
     const double centre_j = grid_.centre(j), centre_i = grid_.centre(i);
-    if (shaded.face != nullptr) {
-      const FaceLanes& face = *shaded.face;
+    if (seen != nullptr) {
+      const FaceLanes& face = *seen;
       const double plane = face.value[kInverseU] + (face.per_j[kInverseU] * (centre_j - face.anchor_j) +
                                                     face.per_i[kInverseU] * (centre_i - face.anchor_i));
       return 1 / std::min(std::max(plane, face.least), face.greatest);
     }
-    if (shaded.surface == Surface::kSky) return shaded.u;
+    if (surface == Surface::kSky) return sampled_u;
     const double u = environment_.sea.depth(environment_.view.ray(centre_j, centre_i));
-    return u < std::numeric_limits<double>::infinity() ? u : shaded.u;
+    return u < std::numeric_limits<double>::infinity() ? u : sampled_u;
   }
 
   const Environment& environment_;
   const TiledFrame& frame_;
   const Sampling sampling_;
   const SampleGrid grid_;
-  const std::uint64_t central_;  // the bit of that sample
+  const std::uint64_t central_;     // the bit of that sample
+  std::array<double, 65> share_{};  // of a pixel's samples, by their number
   Picture& picture_;
   std::unique_ptr<MeanColors> colors_;  // where a filter reaches beyond a pixel
 };
