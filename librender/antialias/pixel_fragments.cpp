@@ -25,6 +25,7 @@ FragmentGatherer::FragmentGatherer(const Environment& environment, const Samplin
   // Pixels lie within blocks, or are whole blocks.
   static_assert(kBlockSide % 2 == 0 && kTileSide % 8 == 0);
   for (int s = 0; s < sampling.count; ++s) {
+    to_grid_[static_cast<std::size_t>(s) + 1] = across_ / (256.0 * (s + 1));
     index_[static_cast<std::size_t>(s)] = static_cast<std::uint16_t>(tileIndex(s % across_, s / across_));
   }
 }
@@ -98,23 +99,22 @@ void FragmentGatherer::append(int column, int first_j, int first_i, std::vector<
   const double centre_j = first_j + (across_ - 1) / 2.0, centre_i = first_i + (across_ - 1) / 2.0;
   for (std::uint64_t left = all_; left != 0;) {
     const Owner owner = owner_[static_cast<std::size_t>(std::countr_zero(left))];
-    Fragment fragment;
-    fragment.column = column;
-    fragment.face = owner >= kSea ? nullptr : &faces_[owner];
+    std::uint64_t samples = 0;
     std::int32_t x = 0, y = 0;
+    std::uint32_t count = 0;
     for (std::uint64_t rest = left; rest != 0; rest &= rest - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(rest));
-      if (owner_[s] != owner) continue;
-      fragment.samples |= std::uint64_t{1} << s;
-      ++fragment.count;
-      x += places_[s].x;
-      y += places_[s].y;
+      // Without a branch: neighbours differ as often as not.
+      const std::uint32_t mine = owner_[s] == owner ? 1 : 0;
+      samples |= std::uint64_t{mine} << s;
+      count += mine;
+      x += places_[s].x * static_cast<std::int32_t>(mine);
+      y += places_[s].y * static_cast<std::int32_t>(mine);
     }
-    left &= ~fragment.samples;
-    const double to_grid = across_ / (256.0 * fragment.count);
-    fragment.j = centre_j + x * to_grid;
-    fragment.i = centre_i + y * to_grid;
-    fragments.push_back(fragment);
+    left &= ~samples;
+    const double to_grid = to_grid_[count];
+    fragments.push_back({column, count, samples, owner >= kSea ? nullptr : &faces_[owner],
+                         centre_j + x * to_grid, centre_i + y * to_grid});
   }
 }
 

@@ -55,6 +55,7 @@ class FragmentGatherer {
   std::uint64_t all_;
   std::vector<SamplePlace> places_;
   std::array<std::uint16_t, kMost> index_{};  // of a sample in TileBuffer's order, from its pixel's first
+  std::array<double, kMost + 1> to_grid_{};   // from a sum of so many places to their mean on the grid
   const SettledTile* tile_ = nullptr;
   std::span<const FaceLanes> faces_;
   int first_j_ = 0, first_i_ = 0;                                       // of the tile on the sample grid

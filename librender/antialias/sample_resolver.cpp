@@ -70,12 +70,9 @@ class SampleResolver {
       filter.filterRow(*colors_, i,
                        {std::span(sums).subspan(0, width), std::span(sums).subspan(width, width),
                         std::span(sums).subspan(2 * width, width)});
-      for (std::size_t j = 0; j < width; ++j) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          picture_.rgb[3 * (static_cast<std::size_t>(i) * width + j) + c] =
-              encodeSrgb(static_cast<double>(sums[c * width + j]));
-        }
-      }
+      const std::vector<double> linear(sums.begin(), sums.end());
+      encodeSrgb(linear.data(), linear.data() + width, linear.data() + 2 * width, width,
+                 &picture_.rgb[3 * static_cast<std::size_t>(i) * width]);
     });
   }
 
@@ -155,11 +152,8 @@ class SampleResolver {
         picture_.triangle[pixel] = row.face[n]->identity;
     }
     if (colors_ == nullptr) {
-      for (std::size_t n = 0; n < static_cast<std::size_t>(columns); ++n) {
-        picture_.rgb[3 * (first + n)] = encodeSrgb(row.red[n]);
-        picture_.rgb[3 * (first + n) + 1] = encodeSrgb(row.green[n]);
-        picture_.rgb[3 * (first + n) + 2] = encodeSrgb(row.blue[n]);
-      }
+      encodeSrgb(row.red.data(), row.green.data(), row.blue.data(), static_cast<std::size_t>(columns),
+                 &picture_.rgb[3 * first]);
       return;
     }
     for (std::size_t n = 0; n < static_cast<std::size_t>(columns); ++n) {

@@ -353,11 +353,13 @@ SampleShader::SampleShader(const Environment& environment, TextureStore& texture
 }
 
 void SampleShader::shade(SampleBatch& batch) {
-  // What is behind the last sample is computed with the others.
+  // What is behind the last sample is computed with the others: let it be one of them, that shows nothing
+  // new.
   constexpr std::size_t kWidest = kVectorPadding;
   for (std::size_t n = batch.count; n % kWidest != 0; ++n) {
-    batch.j[n] = batch.i[n] = 0;
-    batch.face[n] = nullptr;
+    batch.j[n] = batch.j[n - 1];
+    batch.i[n] = batch.i[n - 1];
+    batch.face[n] = batch.face[n - 1];
   }
   const std::size_t count = batch.count;
   batch.count = (count + kWidest - 1) / kWidest * kWidest;
