@@ -62,10 +62,12 @@ void FragmentGatherer::enterRow(int first_i) {
 }
 
 bool FragmentGatherer::isBeforeSea(const FaceLanes& face, double j, double i) const {
-  const double above = planeAt(face, j, i) - bound_.at(j, i);
+  const double half = across_ / 2.0, sea = bound_.at(j, i);
+  // No sample of a face is farther than its farthest vertex.
+  if (face.least > sea + (std::abs(bound_.per_j) + std::abs(bound_.per_i)) * half) return true;
   const double change =
       std::abs(face.per_j[kInverseU] - bound_.per_j) + std::abs(face.per_i[kInverseU] - bound_.per_i);
-  return above > change * (across_ / 2.0);
+  return planeAt(face, j, i) - sea > change * half;
 }
 
 void FragmentGatherer::meetSea(int first_j, int first_i) {

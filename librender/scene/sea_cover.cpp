@@ -17,8 +17,9 @@ struct Discriminant {
   double half(const Vector3& ray) const { return dot(sea.scaled_eye, ray); }
   double of(const Vector3& a, const Vector3& b) const { return half(a) * half(b) - dot(a, b) * sea.outside; }
   bool meets(const Vector3& ray) const { return half(ray) < 0 && of(ray, ray) >= 0; }
-  // Anywhere between the rays a and b, or behind the eye there.
+  // Anywhere between the rays a and b, or, if one of them leads down and one up, behind the eye there.
   bool meetsBetween(const Vector3& a, const Vector3& b) const {
+    if (half(a) >= 0 && half(b) >= 0) return false;
     // Quadratic in t, from a to b; greatest at an end or at its top in between.
     const double at_a = of(a, a), at_b = of(b, b), mixed = of(a, b);
     if (at_a >= 0 || at_b >= 0) return true;

@@ -72,6 +72,14 @@ TEST(SeaCover, is_right_about_nowhere_and_everywhere) {
   EXPECT_GT(partly, 50);
 }
 
+// Rays that lead up would meet the sea behind the eye.
+TEST(SeaCover, of_the_sky_is_nowhere) {
+  for (const double height : {2.0, 500.0, 30e3}) {
+    const Scene scene = sceneFrom(height, 40, 0, 60);
+    EXPECT_EQ(seaCover(scene.sea.terms(), scene.view, 0, 0, 319, 199), SeaCover::kNowhere);
+  }
+}
+
 TEST(SeaCover, of_an_eye_in_the_sea_is_nowhere) {
   const Scene scene = sceneFrom(-100, -30, 0, 60);
   EXPECT_EQ(seaCover(scene.sea.terms(), scene.view, 0, 0, 320, 200), SeaCover::kNowhere);
