@@ -273,6 +273,8 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
     page.push_back(block);
   }
   const std::lock_guard guard(cache_->mutex);
+  // Threads that want a page at the same time all read it; the count must not tell how many they were.
+  if (!cache_->pages[page_number].empty()) cache_->bytes_read -= bytes.size();
   cache_->pages[page_number] = page;
   return page[number % kIndexEntriesPerPage];
 }

@@ -18,6 +18,16 @@
 namespace deltaz {
 namespace {
 
+HiddenNodes hiddenNodes(const RenderOptions& options, const SeamIndex& seams) {
+  if (!options.cull || !options.occlusion) return HiddenNodes::kDrawn;
+  // What other transforms, and objects by range, draw is not bound to the nodes' volumes; nor are the borders
+  // of a fixed level beside seams, which are at full resolution.
+  if (options.lod != LodScheme::kError || options.transform != TransformKind::kExact)
+    return HiddenNodes::kDrawn;
+  if (options.fixed_level > 0 && !seams.empty()) return HiddenNodes::kDrawn;
+  return HiddenNodes::kNotOpened;
+}
+
 Result<Picture> renderInArena(const Database& database, const RenderOptions& asked, FrameScratch& scratch,
                               TextureCache& cache, FrameStatistics& statistics) {
   DELTAZ_TRY(checkSampling(asked));
@@ -32,21 +42,22 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
   ScheduleOptions levels = by_range ? ScheduleOptions{.tolerance = 0, .fixed_level = -1}
                                     : ScheduleOptions{options.tolerance, options.fixed_level};
   levels.cull = options.cull;
-  DELTAZ_TRY_ASSIGN(const Schedule schedule,
-                    scheduleNodes(database, seams, environment.view, levels, statistics.nodes));
+  FrameDrawer drawer(database, seams, environment, options, scratch, statistics, watch);
+  const HiddenNodes hidden = hiddenNodes(options, seams);
+  Scheduler scheduler(database, seams, environment.view, levels, statistics.nodes);
+  DELTAZ_TRY(drawer.drawTerrain(scheduler, hidden));
+  const Schedule schedule = scheduler.finish();
   statistics.level = schedule.level;
   statistics.coarsest_level = schedule.coarsest_level;
+
   DELTAZ_TRY_ASSIGN(const PoseTable poses, PoseTable::of(database, options.poses));
   DELTAZ_TRY_ASSIGN(const ModelSchedule models,
                     processModelTrees(modelSceneOf(database), poses, environment.view,
                                       {options.tolerance, options.fixed_level}, statistics.models));
+  statistics.milliseconds.schedule += watch.lap();
+  DELTAZ_TRY(drawer.drawModels(models, hidden != HiddenNodes::kDrawn));
   statistics.projected_error = by_range ? std::numeric_limits<double>::infinity()
                                         : std::max(schedule.projected_error, models.projected_error);
-  statistics.milliseconds.schedule = watch.lap();
-
-  FrameDrawer drawer(database, seams, environment, options, scratch, statistics, watch);
-  DELTAZ_TRY(drawer.drawTerrain(schedule));
-  DELTAZ_TRY(drawer.drawModels(models));
   statistics.projected_error += statistics.transform_error;
   const double samples_across = samplesAcross(asked.sampling.count);
   statistics.projected_error /= samples_across;

@@ -17,6 +17,7 @@
 #include "librender/frame_scratch.h"
 #include "librender/objects/border_stitcher.h"
 #include "librender/objects/terrain_object_processor.h"
+#include "librender/occlusion.h"
 #include "librender/raster/pretiler.h"
 #include "librender/scene/environment.h"
 #include "librender/scene/model_tree_processor.h"
@@ -26,6 +27,13 @@
 
 namespace deltaz {
 
+// What is saved of nodes that nearer ground hides.
+enum class HiddenNodes : std::uint8_t {
+  kDrawn,      // nothing
+  kNotRead,    // the whole cut is made first, and its nodes are tested
+  kNotOpened,  // the cut is made as far as what is drawn lets one see
+};
+
 class FrameDrawer {
  public:
   // Refers to all of them. Adds to `statistics` what it does. `environment` and `options` are those of the
@@ -34,8 +42,10 @@ class FrameDrawer {
               const RenderOptions& options, FrameScratch& scratch, FrameStatistics& statistics,
               Stopwatch& watch);
 
-  Status drawTerrain(const Schedule& schedule);
-  Status drawModels(const ModelSchedule& models);
+  // Draws what the scheduler finds; anew if that contradicts itself.
+  Status drawTerrain(Scheduler& scheduler, HiddenNodes hidden);
+  // After the terrain. With `occlusion` parts that ground hides are neither read nor drawn.
+  Status drawModels(const ModelSchedule& models, bool occlusion);
   // After all drawing. Refers to the scratch.
   const TiledFrame& settle();
   // The nodes that were drawn, by SeenFace::node.
@@ -47,6 +57,12 @@ class FrameDrawer {
     TerrainTile tile;
     TerrainVertices vertices;
   };
+  // Draws nodes of the scheduler's cut, nearest first, but for those that are hidden when their batch comes.
+  Status drawPart(Scheduler& scheduler, std::span<const std::uint32_t> nodes, HiddenNodes hidden);
+  void drawBatch(const std::vector<CutNode>& cut, const BorderStitcher& stitcher,
+                 const std::vector<ProcessedNode>& processed, std::span<const std::uint32_t> nodes);
+  void drawNothing();
+  double leafSide() const;
   // Reads and transforms those of the nodes that are not at hand yet.
   Status process(const std::vector<CutNode>& cut, const std::vector<std::uint32_t>& wanted,
                  std::vector<ProcessedNode>& processed);
@@ -56,7 +72,7 @@ class FrameDrawer {
     PretiledNode node;
     std::uint64_t in = 0, back_facing = 0;
   };
-  void drawBatch(std::size_t count, const std::function<Made(std::size_t)>& make);
+  void drawNodes(std::size_t count, const std::function<Made(std::size_t)>& make);
   TileBins& nextBins();
 
   const Database& database_;
@@ -68,6 +84,7 @@ class FrameDrawer {
   Stopwatch& watch_;
   const SampleOffsets* offsets_;
   Pretiler pretiler_;
+  Occlusion occlusion_;
   std::unordered_map<std::uint32_t, std::unique_ptr<TerrainNode>> terrain_;  // by record
   std::vector<PretiledNode> pretiled_;                                       // as they are drawn
   std::size_t bins_used_ = 0;

@@ -1,11 +1,27 @@
 #include "librender/raster/tiler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace deltaz {
+
+namespace {
+
+// The least 1/U of the blocks that hold an inclusive range of a tile's pixels; if one is less than `enough`,
+// the others may go unlooked at.
+float leastWithin(const TileBuffer& buffer, int first_j, int last_j, int first_i, int last_i, float enough) {
+  float least = HUGE_VALF;
+  for (int i = first_i / kBlockSide; i <= last_i / kBlockSide && least >= enough; ++i) {
+    for (int j = first_j / kBlockSide; j <= last_j / kBlockSide; ++j)
+      least = std::min(least, buffer.least[static_cast<std::size_t>(i * kBlocksAcross + j)]);
+  }
+  return least;
+}
+
+}  // namespace
 
 void Tiler::begin(int width, int height, const SampleOffsets* offsets) {
   offsets_ = offsets;
@@ -52,9 +68,33 @@ void Tiler::drawTile(const TileBins& bins, std::size_t t, Worker& worker) {
   }
   if (before == 0) open.buffer.clear();
   const auto across = static_cast<std::size_t>(frame_.across);
-  rasterizeTile(
-      {static_cast<int>(t % across), static_cast<int>(t / across), frame_.width, frame_.height, offsets_},
-      open.triangles, before, crossing_, open.buffer, worker.counts);
+  const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), frame_.width, frame_.height,
+                  offsets_};
+  rasterizeTile(tile, open.triangles, before, crossing_, open.buffer, worker.counts);
+  open.least = leastWithin(open.buffer, 0, std::min(kTileSide, tile.width - tile.j * kTileSide) - 1, 0,
+                           std::min(kTileSide, tile.height - tile.i * kTileSide) - 1, 0);
+}
+
+bool Tiler::isHidden(const ScreenExtent& extent) const {
+  if (extent.empty()) return false;
+  // Samples that show nothing have 1/U = 0.
+  const float nearest = std::nextafter(static_cast<float>(extent.largest_inverse_u), HUGE_VALF);
+  for (int i = extent.first_i / kTileSide; i <= extent.last_i / kTileSide; ++i) {
+    for (int j = extent.first_j / kTileSide; j <= extent.last_j / kTileSide; ++j) {
+      const OpenTile* const open =
+          open_[static_cast<std::size_t>(i) * static_cast<std::size_t>(frame_.across) +
+                static_cast<std::size_t>(j)]
+              .get();
+      if (open == nullptr || open->triangles.empty()) return false;
+      if (open->least >= nearest) continue;
+      const int j0 = j * kTileSide, i0 = i * kTileSide;
+      if (leastWithin(open->buffer, std::max(0, extent.first_j - j0),
+                      std::min(kTileSide - 1, extent.last_j - j0), std::max(0, extent.first_i - i0),
+                      std::min(kTileSide - 1, extent.last_i - i0), nearest) < nearest)
+        return false;
+    }
+  }
+  return true;
 }
 
 const TiledFrame& Tiler::settle() {

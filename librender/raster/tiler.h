@@ -15,6 +15,7 @@
 #include "librender/raster/face_lanes.h"
 #include "librender/raster/tile_bins.h"
 #include "librender/raster/tile_rasterizer.h"
+#include "librender/scene/screen_extent.h"
 
 namespace deltaz {
 
@@ -51,6 +52,7 @@ struct TiledFrame {
 struct OpenTile {
   TileBuffer buffer;                             // once there are triangles
   std::vector<const RasterTriangle*> triangles;  // so far; owners in `buffer` are their indices
+  float least = 0;                               // 1/U of its samples is no less
 };
 
 class Tiler {
@@ -59,6 +61,9 @@ class Tiler {
   void begin(int width, int height, const SampleOffsets* offsets = nullptr);
   // Draws what lies in the bins, which must stay as they are until the frame is settled.
   void draw(const TileBins& bins);
+  // True only if all samples within the extent show something already, none with a lesser 1/U than the
+  // extent's largest: what lies in it changes nothing. Never of an empty one.
+  bool isHidden(const ScreenExtent& extent) const;
   // Valid until the next frame.
   const TiledFrame& settle();
 

@@ -15,7 +15,7 @@ std::string findLoss(const FrameStatistics& statistics) {
   std::string loss =
       compare("nodes", n.visited,
               n.empty + n.opened + n.out_of_view + n.beyond_horizon + n.facing_away + n.occluded + n.drawn);
-  if (loss.empty()) loss = compare("models", m.visited, m.out_of_view + m.drawn);
+  if (loss.empty()) loss = compare("models", m.visited, m.out_of_view + m.occluded + m.drawn);
   if (loss.empty()) loss = compare("triangles", t.in, t.back_facing + t.clipped + t.no_sample + t.drawn);
   if (loss.empty() && statistics.samples.written > statistics.samples.tested) {
     loss = fmt::format("samples: {} were written of {} tested", statistics.samples.written,

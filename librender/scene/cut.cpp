@@ -73,6 +73,41 @@ void CutIndex::postsAcross(const NodePosition& position, Side side, std::int64_t
   posts.erase(std::unique(posts.begin(), posts.end()), posts.end());
 }
 
+void CutIndex::appendTouching(const NodePosition& position, std::vector<std::uint32_t>& nodes) const {
+  for (const Side side : kSides) {
+    if (const std::uint32_t whole = acrossWhole(position, side); whole != kNone) {
+      nodes.push_back(whole);
+    } else {
+      appendFiner(beyond(position, side), static_cast<Side>((static_cast<int>(side) + 2) % 4), nodes);
+    }
+  }
+  const std::int64_t span = grids_[position.grid].leaf_cells << position.level;
+  for (int corner = 0; corner < 4; ++corner) {
+    const std::int64_t column = position.x * span + ((corner & 1) != 0 ? span : -1),
+                       row = position.y * span + ((corner & 2) != 0 ? span : -1);
+    if (const std::uint32_t node = holding(position.grid, column, row); node != kNone) nodes.push_back(node);
+  }
+}
+
+// `facing` is the side of `position` that they lie on.
+void CutIndex::appendFiner(const NodePosition& position, Side facing,
+                           std::vector<std::uint32_t>& nodes) const {
+  if (const std::uint32_t node = at(position); node != kNone) {
+    nodes.push_back(node);
+    return;
+  }
+  if (position.level == 0) return;
+  const bool along_x = facing == Side::kSouth || facing == Side::kNorth;
+  for (std::int32_t half = 0; half < 2; ++half) {
+    NodePosition child{position.grid, static_cast<std::uint8_t>(position.level - 1), position.x * 2,
+                       position.y * 2};
+    (along_x ? child.x : child.y) += half;
+    if (facing == Side::kEast) ++child.x;
+    if (facing == Side::kNorth) ++child.y;
+    appendFiner(child, facing, nodes);
+  }
+}
+
 // `facing` is the side of `position` that the posts lie on.
 void CutIndex::addPosts(const NodePosition& position, Side facing, std::int64_t from, std::int64_t to,
                         std::vector<std::int64_t>& posts) const {

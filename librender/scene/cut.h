@@ -18,6 +18,11 @@ namespace deltaz {
 struct CutNode {
   Node node;
   bool in_view = false;    // drawn; nothing of the others can be seen
+  bool waiting = false;    // while the cut is made: not in view yet, since nobody has looked that far
+  bool occluded = false;   // in view, but hidden by what lies before it
+  bool drawn = false;      // while the cut is made
+  bool frozen = false;     // while the cut is made: drawn, or beside what is drawn
+  double distance = 0;     // from the eye; nothing of it is nearer, metres
   bool seamed = false;     // a seam touches it (SeamState::kTouched)
   NodeVolume volume = {};  // of terrain nodes
 };
@@ -39,6 +44,9 @@ class CutIndex {
   // The node of the same or a coarser level that borders all of a side; kNone if there are finer ones or
   // none.
   std::uint32_t acrossWhole(const NodePosition& position, Side side) const;
+  // Appends the nodes that share a border or a corner with the one at `position`, some of them more than
+  // once.
+  void appendTouching(const NodePosition& position, std::vector<std::uint32_t>& nodes) const;
   // Posts of the finer nodes across a side that lie strictly between two posts of it, ascending: indices
   // along the side.
   void postsAcross(const NodePosition& position, Side side, std::int64_t from, std::int64_t to,
@@ -47,6 +55,7 @@ class CutIndex {
  private:
   void addPosts(const NodePosition& position, Side facing, std::int64_t from, std::int64_t to,
                 std::vector<std::int64_t>& posts) const;
+  void appendFiner(const NodePosition& position, Side facing, std::vector<std::uint32_t>& nodes) const;
   struct Grid {
     int levels = 1;
     std::int64_t leaf_cells = 1;

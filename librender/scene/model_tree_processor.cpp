@@ -136,7 +136,8 @@ class ModelTreeProcessor {
         double error = 0;
         const std::uint32_t lod = levelOf(part, sphere, largestStretch(tree.to_model[number]), error);
         schedule_.parts.push_back({instance.number, instance.model, number, lod,
-                                   concatenate(tree.to_model[number], instance.to_earth)});
+                                   concatenate(tree.to_model[number], instance.to_earth), sphere.centre,
+                                   sphere.radius});
         schedule_.projected_error = std::max(schedule_.projected_error, error);
         if (!instance.drawn) ++statistics_.drawn;
         instance.drawn = true;

@@ -47,6 +47,8 @@ struct DrawnPart {
   std::uint32_t model = 0, part = 0;  // numbers
   std::uint32_t lod = 0;              // index into the part's levels of detail
   ModelTransform to_earth{};          // part's space -> Earth-centred metres
+  Vector3 centre;                     // of a sphere around what it shows, Earth-centred
+  double radius = 0;                  // metres
 };
 
 struct ModelSchedule {

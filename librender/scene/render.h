@@ -56,6 +56,9 @@ struct RenderOptions {
   bool keep_triangle_ids = false;
   // For tests of culling: false draws the nodes that cannot be seen, too.
   bool cull = true;
+  // The same of what nearer things hide. Only the fast engine with LodScheme::kError and the exact transform
+  // leaves that out.
+  bool occlusion = true;
 };
 
 // What covers a pixel.
@@ -79,13 +82,15 @@ struct FrameStatistics {
     std::uint64_t visited = 0, out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, drawn = 0;
     std::uint64_t empty = 0, opened = 0;
   } nodes;
-  // Placed models: those read from the file, those of them that no part of shows in the picture, and those
-  // drawn, part or whole. A page of placements that is out of view is not read.
+  // Placed models: those read from the file, those of them that no part of shows in the picture, those whose
+  // parts in the picture are all hidden by ground, and those drawn, part or whole. A page of placements that
+  // is out of view is not read.
   struct Models {
-    std::uint64_t visited = 0, out_of_view = 0, drawn = 0;  // visited = out_of_view + drawn
+    std::uint64_t visited = 0, out_of_view = 0, occluded = 0, drawn = 0;  // visited = sum of the others
   } models;
   struct Triangles {
     std::uint64_t in = 0, back_facing = 0, clipped = 0, no_sample = 0, drawn = 0;  // in = sum of the others
+    std::uint64_t hidden = 0;  // of those drawn: behind all there was before any of their samples was tested
   } triangles;
   // With LodScheme::kReport: the terrain objects of the nodes drawn, and their faces before back ones are
   // removed, each object's under its (finer) level; those of the coarser level of objects drawn twice.

@@ -1,232 +1,352 @@
 #include "librender/scene/scheduler.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
-#include <unordered_set>
 #include <utility>
 
-#include "librender/scene/horizon.h"
 #include "librender/scene/normal_cone.h"
-#include "librender/scene/projected_error.h"
-#include "librender/scene/strip_error.h"
-#include "librender/scene/view_volume.h"
 
 namespace deltaz {
 namespace {
 
-class Scheduler {
- public:
-  Scheduler(const Database& database, const SeamIndex& seams, const ViewTransform& view,
-            const ScheduleOptions& options, FrameStatistics::Nodes& statistics)
-      : database_(database),
-        seams_(seams),
-        view_(view),
-        options_(options),
-        statistics_(statistics),
-        view_volume_(view, options.tolerance),
-        horizon_(database.area(), view.eye) {}
-
-  Result<Schedule> run() {
-    DELTAZ_TRY_ASSIGN(const Node root, database_.root());
-    std::vector<Node> waiting = {root};
-    DELTAZ_TRY(refine(waiting));
-    if (options_.fixed_level < 0 && options_.test_strips) DELTAZ_TRY(refineBesideStrips());
-    return finish();
-  }
-
- private:
-  // Error bounds of what the node itself draws, in pixels. Coverage errors lie in plan, in any direction.
-  double ownError(const CutNode& candidate) const {
-    const Node& node = candidate.node;
-    if (node.record.level == 0) return 0;
-    return std::max(projectedHeightErrorBound(view_, candidate.volume, node.geometricError()),
-                    projectedErrorBound(view_, candidate.volume, node.coverageError()));
-  }
-
-  bool isFineEnough(const CutNode& candidate) const {
-    const Node& node = candidate.node;
-    if (node.record.type != NodeType::kTerrain) return false;
-    if (node.record.level == 0) return true;
-    // In view or not: what is in view may stand on its posts.
-    if (candidate.seamed) return false;
-    if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
-    if (!candidate.in_view) return true;
-    return options_.tolerance > 0 && ownError(candidate) <= options_.tolerance;
-  }
-
-  // False, and counted, if nothing of the node can be seen.
-  bool maySee(const CutNode& candidate) {
-    if (view_volume_.isOutside(candidate.volume)) {
-      ++statistics_.out_of_view;
-      return false;
-    }
-    if (horizon_.hides(candidate.volume)) {
-      ++statistics_.beyond_horizon;
-      return false;
-    }
-    if (facesAway(candidate.node, view_.eye)) {
-      ++statistics_.facing_away;
-      return false;
-    }
-    return true;
-  }
-
-  // Replaces the waiting nodes by what is fine enough below them, and appends that to the cut.
-  Status refine(std::vector<Node>& waiting) {
-    while (!waiting.empty()) {
-      const Node parent = waiting.back();
-      waiting.pop_back();
-      DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database_.children(parent));
-      for (const Node& child : children) {
-        ++statistics_.visited;
-        const bool terrain = child.record.type == NodeType::kTerrain;
-        const SeamState seam = terrain ? seams_.stateOf(positionOf(child.record)) : SeamState::kFree;
-        if (child.record.isEmpty() || (!terrain && child.record.type != NodeType::kCluster) ||
-            seam == SeamState::kRemoved) {
-          ++statistics_.empty;
-          continue;
-        }
-        CutNode candidate{child, true};
-        candidate.seamed = seam == SeamState::kTouched;
-        if (terrain) {
-          candidate.volume = volumeOf(child, database_.grid(child.record.grid), !candidate.seamed);
-          candidate.in_view = !options_.cull || maySee(candidate);
-        }
-        if (isFineEnough(candidate)) {
-          nodes_.push_back(candidate);
-        } else {
-          // One that cannot be seen is counted as that, even if others stand on its posts.
-          if (candidate.in_view) ++statistics_.opened;
-          waiting.push_back(child);
-        }
-      }
-    }
-    return Success{};
-  }
-
-  // What is known of the strip along a node's border.
-  struct Strip {
-    bool known = false;
-    double pixels = 0;                   // the bound of its error; 0 if no neighbour is coarser
-    std::vector<std::uint32_t> depends;  // numbers of the records it follows from
-  };
-
-  // The coarser node that contributes most, as an index of nodes_; kNone if there is none.
-  std::uint32_t weighStrip(const StripErrors& strips, std::uint32_t n) {
-    std::uint32_t coarser = CutIndex::kNone;
-    const double added = strips.strip(n, coarser, &touched_);
-    Strip& strip = strips_[n];
-    strip.known = true;
-    strip.pixels = 0;
-    if (coarser != CutIndex::kNone) {
-      const Node& node = nodes_[n].node;
-      const double own = node.record.level == 0 ? 0 : node.geometricError();
-      strip.pixels = projectedHeightErrorBound(view_, nodes_[n].volume, own + added);
-    }
-    strip.depends.clear();
-    for (const std::uint32_t other : touched_) strip.depends.push_back(nodes_[other].node.number);
-    return coarser;
-  }
-
-  // Refines coarser neighbours until every strip in view is good enough. A child's error may exceed its
-  // parent's, so strips beside what was refined are looked at again; every round refines, so rounds end.
-  Status refineBesideStrips() {
-    for (;;) {
-      strips_.resize(nodes_.size());
-      const CutIndex index(database_, nodes_);
-      const StripErrors strips(database_, nodes_, index);
-      std::unordered_set<std::uint32_t> refined;  // record numbers
-      for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
-        if (!nodes_[n].in_view || strips_[n].known) continue;
-        const std::uint32_t coarser = weighStrip(strips, n);
-        if (coarser == CutIndex::kNone || (options_.tolerance > 0 && strips_[n].pixels <= options_.tolerance))
-          continue;
-        refined.insert(nodes_[coarser].node.number);
-      }
-      if (refined.empty()) return Success{};
-      std::vector<Node> waiting;
-      std::size_t kept = 0;
-      for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        if (refined.contains(nodes_[n].node.number)) {
-          if (nodes_[n].in_view) ++statistics_.opened;
-          waiting.push_back(nodes_[n].node);
-          continue;
-        }
-        Strip& strip = strips_[n];
-        strip.known =
-            strip.known && std::none_of(strip.depends.begin(), strip.depends.end(),
-                                        [&](std::uint32_t other) { return refined.contains(other); });
-        if (kept != n) {
-          nodes_[kept] = nodes_[n];
-          strips_[kept] = std::move(strip);
-        }
-        ++kept;
-      }
-      nodes_.resize(kept);
-      strips_.resize(kept);
-      DELTAZ_TRY(refine(waiting));
-    }
-  }
-
-  Schedule finish() {
-    Schedule schedule;
-    strips_.resize(nodes_.size());
-    std::optional<CutIndex> index;
-    std::optional<StripErrors> strips;
-    bool first = true;
-    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
-      if (!nodes_[n].in_view) continue;
-      const int level = nodes_[n].node.record.level;
-      schedule.level = first ? level : std::min(schedule.level, level);
-      schedule.coarsest_level = std::max(schedule.coarsest_level, level);
-      first = false;
-      ++statistics_.drawn;
-      if (!strips_[n].known) {
-        // Strips were not to be tested.
-        if (!strips) strips.emplace(database_, nodes_, index.emplace(database_, nodes_));
-        weighStrip(*strips, n);
-      }
-      schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n]), strips_[n].pixels});
-    }
-    std::sort(nodes_.begin(), nodes_.end(),
-              [](const CutNode& a, const CutNode& b) { return a.node.number < b.node.number; });
-    schedule.nodes = std::move(nodes_);
-    schedule.front_to_back = frontToBack(schedule.nodes);
-    return schedule;
-  }
-
-  std::vector<std::uint32_t> frontToBack(const std::vector<CutNode>& nodes) const {
-    std::vector<std::pair<double, std::uint32_t>> by_distance;
-    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-      if (!nodes[n].in_view) continue;
-      by_distance.emplace_back(leastDistance(nodes[n].volume, view_.eye), n);
-    }
-    std::sort(by_distance.begin(), by_distance.end());
-    std::vector<std::uint32_t> order;
-    order.reserve(by_distance.size());
-    for (const auto& [distance, n] : by_distance) order.push_back(n);
-    return order;
-  }
-
-  const Database& database_;
-  const SeamIndex& seams_;
-  const ViewTransform& view_;
-  const ScheduleOptions& options_;
-  FrameStatistics::Nodes& statistics_;
-  // A border that follows coarser edges lies up to the tolerance beside the finer node that is to meet it: so
-  // much more than the picture is in view.
-  ViewVolume view_volume_;
-  Horizon horizon_;
-  std::vector<CutNode> nodes_;
-  std::vector<Strip> strips_;           // of nodes_, as far as they are known
-  std::vector<std::uint32_t> touched_;  // of the strip that is looked at
-};
+// What is ready lies at least so many nodes away from what is waiting.
+constexpr std::uint8_t kRings = 3;
 
 }  // namespace
 
+Scheduler::Scheduler(const Database& database, const SeamIndex& seams, const ViewTransform& view,
+                     const ScheduleOptions& options, FrameStatistics::Nodes& statistics)
+    : database_(database),
+      seams_(seams),
+      view_(view),
+      options_(options),
+      statistics_(statistics),
+      view_volume_(view, options.tolerance),
+      horizon_(database.area(), view.eye) {}
+
+void Scheduler::restart() {
+  nodes_.clear();
+  strips_.clear();
+  statistics_ = {};
+  begun_ = contradicted_ = false;
+}
+
+Status Scheduler::advance(double farthest, const Hides& hides) {
+  farthest_ = farthest;
+  hides_ = hides;
+  if (begun_) {
+    DELTAZ_TRY(lookFarther());
+  } else {
+    begun_ = true;
+    DELTAZ_TRY_ASSIGN(const Node root, database_.root());
+    std::vector<Node> waiting = {root};
+    DELTAZ_TRY(refine(waiting));
+  }
+  if (options_.fixed_level < 0 && options_.test_strips) DELTAZ_TRY(refineBesideStrips());
+  return Success{};
+}
+
+// Error bounds of what the node itself draws, in pixels. Coverage errors lie in plan, in any direction.
+double Scheduler::ownError(const CutNode& candidate) const {
+  const Node& node = candidate.node;
+  if (node.record.level == 0) return 0;
+  return std::max(projectedHeightErrorBound(view_, candidate.volume, node.geometricError()),
+                  projectedErrorBound(view_, candidate.volume, node.coverageError()));
+}
+
+bool Scheduler::isFineEnough(const CutNode& candidate) const {
+  const Node& node = candidate.node;
+  if (node.record.type != NodeType::kTerrain) return false;
+  if (node.record.level == 0) return true;
+  // In view or not: what is in view may stand on its posts.
+  if (candidate.seamed) return false;
+  if (candidate.waiting) return true;
+  if (candidate.in_view && must_open_.contains(node.number)) return false;
+  if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
+  if (!candidate.in_view) return true;
+  return options_.tolerance > 0 && ownError(candidate) <= options_.tolerance;
+}
+
+// False, and counted, if nothing of the node can be seen.
+bool Scheduler::maySee(const CutNode& candidate) {
+  if (view_volume_.isOutside(candidate.volume)) {
+    ++statistics_.out_of_view;
+    return false;
+  }
+  if (horizon_.hides(candidate.volume)) {
+    ++statistics_.beyond_horizon;
+    return false;
+  }
+  if (facesAway(candidate.node, view_.eye)) {
+    ++statistics_.facing_away;
+    return false;
+  }
+  return true;
+}
+
+// Whether a terrain node that may be seen is, as far as can be told now. What must be opened anyway is not
+// asked for.
+void Scheduler::look(CutNode& candidate) {
+  candidate.in_view = true;
+  if (candidate.seamed && candidate.node.record.level > 0) return;
+  candidate.waiting = candidate.distance >= farthest_;
+  candidate.in_view = !candidate.waiting;
+  if (candidate.in_view && hides_ && hides_(candidate.volume)) {
+    ++statistics_.occluded;
+    candidate.in_view = false;
+  }
+}
+
+// Replaces the waiting nodes by what is fine enough below them, and appends that to the cut.
+Status Scheduler::refine(std::vector<Node>& waiting) {
+  while (!waiting.empty()) {
+    const Node parent = waiting.back();
+    waiting.pop_back();
+    DELTAZ_TRY_ASSIGN(const std::vector<Node> children, database_.children(parent));
+    for (const Node& child : children) {
+      ++statistics_.visited;
+      const bool terrain = child.record.type == NodeType::kTerrain;
+      const SeamState seam = terrain ? seams_.stateOf(positionOf(child.record)) : SeamState::kFree;
+      if (child.record.isEmpty() || (!terrain && child.record.type != NodeType::kCluster) ||
+          seam == SeamState::kRemoved) {
+        ++statistics_.empty;
+        continue;
+      }
+      CutNode candidate{child, true};
+      candidate.seamed = seam == SeamState::kTouched;
+      if (terrain) {
+        candidate.volume = volumeOf(child, database_.grid(child.record.grid), !candidate.seamed);
+        candidate.distance = leastDistance(candidate.volume, view_.eye);
+        candidate.in_view = !options_.cull || maySee(candidate);
+        if (candidate.in_view) look(candidate);
+      }
+      if (isFineEnough(candidate)) {
+        nodes_.push_back(candidate);
+      } else {
+        // One that cannot be seen is counted as that, even if others stand on its posts.
+        if (candidate.in_view) ++statistics_.opened;
+        waiting.push_back(child);
+      }
+    }
+  }
+  return Success{};
+}
+
+// Looks at the waiting nodes that are near enough now.
+Status Scheduler::lookFarther() {
+  std::unordered_set<std::uint32_t> opened, changed;  // record numbers
+  std::vector<Node> waiting;
+  for (CutNode& candidate : nodes_) {
+    if (!candidate.waiting || candidate.distance >= farthest_) continue;
+    changed.insert(candidate.node.number);
+    look(candidate);
+    if (isFineEnough(candidate)) continue;
+    if (candidate.in_view) ++statistics_.opened;
+    opened.insert(candidate.node.number);
+    waiting.push_back(candidate.node);
+  }
+  remove(opened, changed);
+  return refine(waiting);
+}
+
+// Takes nodes out of the cut, and forgets the strips that followed from changed ones.
+void Scheduler::remove(const std::unordered_set<std::uint32_t>& removed,
+                       const std::unordered_set<std::uint32_t>& changed) {
+  strips_.resize(nodes_.size());
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    if (removed.contains(nodes_[n].node.number)) continue;
+    Strip& strip = strips_[n];
+    strip.known = strip.known && std::none_of(strip.depends.begin(), strip.depends.end(),
+                                              [&](std::uint32_t other) { return changed.contains(other); });
+    if (kept != n) {
+      nodes_[kept] = nodes_[n];
+      strips_[kept] = std::move(strip);
+    }
+    ++kept;
+  }
+  nodes_.resize(kept);
+  strips_.resize(kept);
+}
+
+// The coarser node that contributes most, as an index of nodes_; kNone if there is none.
+std::uint32_t Scheduler::weighStrip(const StripErrors& strips, std::uint32_t n) {
+  std::uint32_t coarser = CutIndex::kNone;
+  const double added = strips.strip(n, coarser, &touched_);
+  Strip& strip = strips_[n];
+  strip.known = true;
+  strip.pixels = 0;
+  if (coarser != CutIndex::kNone) {
+    const Node& node = nodes_[n].node;
+    const double own = node.record.level == 0 ? 0 : node.geometricError();
+    strip.pixels = projectedHeightErrorBound(view_, nodes_[n].volume, own + added);
+  }
+  strip.depends.clear();
+  for (const std::uint32_t other : touched_) strip.depends.push_back(nodes_[other].node.number);
+  return coarser;
+}
+
+// Refines coarser neighbours until every strip in view is good enough. A child's error may exceed its
+// parent's, so strips beside what was refined are looked at again; every round refines, so rounds end.
+Status Scheduler::refineBesideStrips() {
+  for (;;) {
+    strips_.resize(nodes_.size());
+    const CutIndex index(database_, nodes_);
+    const StripErrors strips(database_, nodes_, index);
+    std::unordered_set<std::uint32_t> refined;  // record numbers
+    std::vector<Node> waiting;
+    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+      if (!nodes_[n].in_view || strips_[n].known) continue;
+      const std::uint32_t coarser = weighStrip(strips, n);
+      if (coarser == CutIndex::kNone || (options_.tolerance > 0 && strips_[n].pixels <= options_.tolerance))
+        continue;
+      const CutNode& refining = nodes_[coarser];
+      if (refining.frozen) {
+        contradicted_ = true;
+        must_open_.insert(refining.node.number);
+      }
+      if (!refined.insert(refining.node.number).second) continue;
+      ++statistics_.opened;
+      waiting.push_back(refining.node);
+    }
+    if (refined.empty() || contradicted_) return Success{};
+    remove(refined, refined);
+    DELTAZ_TRY(refine(waiting));
+  }
+}
+
+bool Scheduler::complete() const {
+  return begun_ && std::none_of(nodes_.begin(), nodes_.end(), [](const CutNode& n) { return n.waiting; });
+}
+
+double Scheduler::nearestWaiting() const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const CutNode& node : nodes_) {
+    if (node.waiting) nearest = std::min(nearest, node.distance);
+  }
+  return nearest;
+}
+
+// What the border of a node follows from: the nodes that touch it, and, since the ends of a coarser one's
+// edges may follow edges that are coarser still, the coarser ones that touch those. Some more than once.
+std::vector<std::uint32_t> Scheduler::bordersOf(const CutIndex& index, std::uint32_t node) const {
+  std::vector<std::uint32_t> borders, touching, from = {node};
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const NodeRecord& record = nodes_[from[k]].node.record;
+    touching.clear();
+    index.appendTouching(positionOf(record), touching);
+    for (const std::uint32_t other : touching) {
+      // What is not drawn moves nothing.
+      if (!nodes_[other].in_view && !nodes_[other].waiting) continue;
+      const bool coarser = nodes_[other].node.record.level > record.level;
+      if (k == 0 || coarser) borders.push_back(other);
+      if (coarser && std::find(from.begin(), from.end(), other) == from.end()) from.push_back(other);
+    }
+  }
+  return borders;
+}
+
+std::vector<std::uint32_t> Scheduler::ready() const {
+  // Breadth first from what is waiting.
+  std::vector<std::uint8_t> rings(nodes_.size(), kRings);
+  std::vector<std::uint32_t> front, next, touching;
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    if (!nodes_[n].waiting) continue;
+    rings[n] = 0;
+    front.push_back(n);
+  }
+  std::optional<CutIndex> index;
+  if (!front.empty()) {
+    index.emplace(database_, nodes_);
+    for (std::uint8_t ring = 1; ring < kRings; ++ring) {
+      next.clear();
+      for (const std::uint32_t n : front) {
+        touching.clear();
+        index->appendTouching(positionOf(nodes_[n].node.record), touching);
+        for (const std::uint32_t other : touching) {
+          // What is not drawn moves nothing, and needs no refining.
+          if (!nodes_[other].in_view || rings[other] <= ring) continue;
+          rings[other] = ring;
+          next.push_back(other);
+        }
+      }
+      std::swap(front, next);
+    }
+  }
+  // Seams reach across grids, so what they touch comes last.
+  const bool all = complete();
+  std::vector<std::uint32_t> ready;
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    const CutNode& node = nodes_[n];
+    if (!node.in_view || node.drawn || node.occluded || rings[n] < kRings) continue;
+    if (all) {
+      ready.push_back(n);
+    } else if (!node.seamed) {
+      const std::vector<std::uint32_t> borders = bordersOf(*index, n);
+      if (std::none_of(borders.begin(), borders.end(), [&](std::uint32_t b) { return nodes_[b].waiting; }))
+        ready.push_back(n);
+    }
+  }
+  sortFrontToBack(ready);
+  return ready;
+}
+
+void Scheduler::setDrawn(std::span<const std::uint32_t> nodes) {
+  const CutIndex index(database_, nodes_);
+  for (const std::uint32_t n : nodes) {
+    nodes_[n].drawn = nodes_[n].frozen = true;
+    for (const std::uint32_t other : bordersOf(index, n)) nodes_[other].frozen = true;
+  }
+}
+
+void Scheduler::setOccluded(std::uint32_t node) {
+  nodes_[node].occluded = true;
+  ++statistics_.occluded;
+}
+
+Schedule Scheduler::finish() {
+  Schedule schedule;
+  strips_.resize(nodes_.size());
+  std::optional<CutIndex> index;
+  std::optional<StripErrors> strips;
+  bool first = true;
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    if (!nodes_[n].in_view || nodes_[n].occluded) continue;
+    const int level = nodes_[n].node.record.level;
+    schedule.level = first ? level : std::min(schedule.level, level);
+    schedule.coarsest_level = std::max(schedule.coarsest_level, level);
+    first = false;
+    ++statistics_.drawn;
+    if (!strips_[n].known) {
+      // Strips were not to be tested.
+      if (!strips) strips.emplace(database_, nodes_, index.emplace(database_, nodes_));
+      weighStrip(*strips, n);
+    }
+    schedule.projected_error = std::max({schedule.projected_error, ownError(nodes_[n]), strips_[n].pixels});
+  }
+  std::sort(nodes_.begin(), nodes_.end(),
+            [](const CutNode& a, const CutNode& b) { return a.node.number < b.node.number; });
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    if (nodes_[n].in_view && !nodes_[n].occluded) schedule.front_to_back.push_back(n);
+  }
+  sortFrontToBack(schedule.front_to_back);
+  schedule.nodes = std::move(nodes_);
+  return schedule;
+}
+
+void Scheduler::sortFrontToBack(std::vector<std::uint32_t>& nodes) const {
+  std::sort(nodes.begin(), nodes.end(), [this](std::uint32_t a, std::uint32_t b) {
+    return std::pair(nodes_[a].distance, nodes_[a].node.number) <
+           std::pair(nodes_[b].distance, nodes_[b].node.number);
+  });
+}
+
 Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics) {
-  return Scheduler(database, seams, view, options, statistics).run();
+  Scheduler scheduler(database, seams, view, options, statistics);
+  DELTAZ_TRY(scheduler.advance(std::numeric_limits<double>::infinity(), {}));
+  return scheduler.finish();
 }
 
 }  // namespace deltaz

@@ -8,29 +8,39 @@
 // errors add: the coarser node is refined until the sum projects to no more than the tolerance, too.
 // Neighbours may differ by any number of levels.
 //
-// Reads only the node pages of nodes in the cut and of their siblings. Thread-safety: pure functions.
+// The cut may be made from near to far, so that what is drawn of it tells what need not be opened
+// (Scheduler).
+//
+// Reads only the node pages of nodes in the cut and of their siblings. Thread-safety: pure functions; a
+// Scheduler is one thread's.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "formats/error.h"
 #include "libdb/access/database.h"
 #include "librender/scene/cut.h"
+#include "librender/scene/horizon.h"
 #include "librender/scene/projected_error.h"
 #include "librender/scene/render.h"
 #include "librender/scene/seam_index.h"
+#include "librender/scene/strip_error.h"
+#include "librender/scene/view_volume.h"
 
 namespace deltaz {
 
 struct Schedule {
-  int level = 0, coarsest_level = 0;  // of the nodes in view
+  int level = 0, coarsest_level = 0;  // of the nodes drawn
   double projected_error = 0;         // pixels: the largest bound of what is drawn, strips included
   // The cut, in the order of the record numbers. It covers all of the area that has heights, but for what
   // lies under other grids.
   std::vector<CutNode> nodes;
-  // Indices into `nodes` of those in view, nearest first: by the least distance between the eye and the
-  // node's sphere, those equally near by record number. Nothing a node draws is nearer than that distance.
+  // Indices into `nodes` of those drawn, nearest first: by the least distance between the eye and the node's
+  // volume, those equally near by record number. Nothing a node draws is nearer than that distance.
   std::vector<std::uint32_t> front_to_back;
 };
 
@@ -48,5 +58,78 @@ struct ScheduleOptions {
 // whatever the tolerance.
 Result<Schedule> scheduleNodes(const Database& database, const SeamIndex& seams, const ViewTransform& view,
                                const ScheduleOptions& options, FrameStatistics::Nodes& statistics);
+
+// Makes the cut step by step. A step opens what is nearer than some distance and not hidden, and says what of
+// the cut can be drawn: nodes around which nothing will change, because whatever is still waiting is some
+// nodes away. Strips may carry a change across any number of nodes, if each must be refined for the one
+// before; if that reaches what is drawn, or what its border follows, contradicted() becomes true, and the
+// frame must be drawn anew, with what was too coarse opened from the start.
+class Scheduler {
+ public:
+  // True only if what is drawn so far hides all of the volume.
+  using Hides = std::function<bool(const NodeVolume&)>;
+
+  // Refers to all of them, as scheduleNodes does.
+  Scheduler(const Database& database, const SeamIndex& seams, const ViewTransform& view,
+            const ScheduleOptions& options, FrameStatistics::Nodes& statistics);
+
+  // Looks as far as `farthest` metres, which may be infinity. `hides` may be empty.
+  Status advance(double farthest, const Hides& hides);
+  // Whether all has been looked at; else, how near the nearest thing is that has not.
+  bool complete() const;
+  double nearestWaiting() const;
+  bool contradicted() const { return contradicted_; }
+  // Forgets all but what must be opened; the counts are zero again.
+  void restart();
+
+  // Valid until the next advance().
+  const std::vector<CutNode>& cut() const { return nodes_; }
+  // Indices into the cut of those that can be drawn and are neither drawn nor hidden, nearest first.
+  std::vector<std::uint32_t> ready() const;
+  // What became of nodes that were ready.
+  void setDrawn(std::span<const std::uint32_t> nodes);
+  void setOccluded(std::uint32_t node);
+
+  // The schedule of all that was drawn, or is ready. Ends the scheduler's use.
+  Schedule finish();
+
+ private:
+  // What is known of the strip along a node's border.
+  struct Strip {
+    bool known = false;
+    double pixels = 0;                   // the bound of its error; 0 if no neighbour is coarser
+    std::vector<std::uint32_t> depends;  // numbers of the records it follows from
+  };
+
+  double ownError(const CutNode& candidate) const;
+  bool isFineEnough(const CutNode& candidate) const;
+  bool maySee(const CutNode& candidate);
+  void look(CutNode& candidate);
+  Status refine(std::vector<Node>& waiting);
+  Status lookFarther();
+  std::uint32_t weighStrip(const StripErrors& strips, std::uint32_t n);
+  Status refineBesideStrips();
+  void remove(const std::unordered_set<std::uint32_t>& removed,
+              const std::unordered_set<std::uint32_t>& changed);
+  std::vector<std::uint32_t> bordersOf(const CutIndex& index, std::uint32_t node) const;
+  void sortFrontToBack(std::vector<std::uint32_t>& nodes) const;
+
+  const Database& database_;
+  const SeamIndex& seams_;
+  const ViewTransform& view_;
+  ScheduleOptions options_;
+  FrameStatistics::Nodes& statistics_;
+  // A border that follows coarser edges lies up to the tolerance beside the finer node that is to meet it: so
+  // much more than the picture is in view.
+  ViewVolume view_volume_;
+  Horizon horizon_;
+  double farthest_ = 0;
+  Hides hides_;
+  bool begun_ = false, contradicted_ = false;
+  std::unordered_set<std::uint32_t> must_open_;  // numbers of records
+  std::vector<CutNode> nodes_;
+  std::vector<Strip> strips_;           // of nodes_, as far as they are known
+  std::vector<std::uint32_t> touched_;  // of the strip that is looked at
+};
 
 }  // namespace deltaz

@@ -119,7 +119,7 @@ def statistics_have_every_member(folder):
         data = strict_json(file.read_text())
         require(data["engine"] == engine and data["camera"]["width"] == 160 and data["repeat"] == 2, data)
         (frame,) = data["frames"]
-        require(set(frame["models"]) == {"visited", "out_of_view", "drawn"}, frame)
+        require(set(frame["models"]) == {"visited", "out_of_view", "occluded", "drawn"}, frame)
         nodes = frame["nodes"]
         require(set(nodes) == {"visited", "out_of_view", "beyond_horizon", "facing_away", "occluded", "drawn", "opened", "empty"}, frame)
         require(nodes["visited"] == sum(count for fate, count in nodes.items() if fate != "visited") > 0, nodes)

@@ -402,7 +402,7 @@ TEST(Models, statistics_count_models_and_their_triangles) {
   EXPECT_EQ(with.models.visited, 15u);
   EXPECT_GT(with.models.drawn, 1u);
   EXPECT_GT(with.models.out_of_view, 1u);
-  EXPECT_EQ(with.models.visited, with.models.drawn + with.models.out_of_view);
+  EXPECT_EQ(with.models.visited, with.models.drawn + with.models.out_of_view + with.models.occluded);
   EXPECT_EQ(with.triangles.in, with.triangles.back_facing + with.triangles.clipped +
                                    with.triangles.no_sample + with.triangles.drawn);
   const MemoryDatabase bare = makeDatabase(smallArea());

@@ -54,12 +54,14 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
   if (lod == LodScheme::kReport) json["objects"] = objectsJson(first.objects);
   json["models"] = {{"visited", first.models.visited},
                     {"out_of_view", first.models.out_of_view},
+                    {"occluded", first.models.occluded},
                     {"drawn", first.models.drawn}};
   json["triangles"] = {{"in", first.triangles.in},
                        {"back_facing", first.triangles.back_facing},
                        {"clipped", first.triangles.clipped},
                        {"no_sample", first.triangles.no_sample},
                        {"drawn", first.triangles.drawn}};
+  json["triangles_hidden"] = first.triangles.hidden;
   json["samples"] = {
       {"tested", first.samples.tested}, {"written", first.samples.written}, {"shaded", first.samples.shaded}};
   json["bytes_read"] = first.bytes_read;

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
+#include <map>
 #include <rapidcheck.h>
 #include <set>
 
+#include "librender/objects/border_stitcher.h"
 #include "librender/scene/view_volume.h"
+#include "tests/librender/cut_checks.h"
 #include "tests/librender/test_databases.h"
 
 namespace deltaz {
@@ -139,6 +143,95 @@ TEST(Scheduler, does_not_visit_what_is_out_of_view) {
   ASSERT_TRUE(schedule.ok());
   EXPECT_EQ(counts.drawn, 0u);
   EXPECT_LT(counts.visited, 6u);
+}
+
+// Makes a cut step by step, hiding nothing, and hands every part of it to `draw`, which gets the cut and the
+// indices of what is ready. True if it came to an end without contradiction.
+template <typename Draw>
+bool stepThrough(Scheduler& scheduler, double first, double step, const Draw& draw) {
+  for (double farthest = 0;;) {
+    if (!scheduler.advance(farthest, {}).ok()) return false;
+    if (scheduler.contradicted()) return false;
+    const std::vector<std::uint32_t> ready = scheduler.ready();
+    draw(scheduler.cut(), ready);
+    scheduler.setDrawn(ready);
+    if (scheduler.complete()) return true;
+    farthest = std::max({first, step * farthest, step * scheduler.nearestWaiting()});
+  }
+}
+
+// The vertices and splits of nodes of a cut.
+std::map<std::uint32_t, std::pair<TerrainVertices, TerrainSplits>> stitchedNodes(
+    const Database& database, const ViewTransform& view, const SeamIndex& seams,
+    const std::vector<CutNode>& cut, const std::vector<std::uint32_t>& nodes) {
+  const CutIndex index(database, cut);
+  std::vector<TerrainTile> tiles(cut.size());
+  std::vector<TerrainVertices> vertices(cut.size());
+  std::vector<ProcessedNode> processed(cut.size());
+  for (const std::uint32_t n : nodesToProcess(database, cut, index, seams, nodes)) {
+    tiles[n] = database.terrain(cut[n].node).value();
+    vertices[n] = terrainVertices(tiles[n], database.grid(tiles[n].grid), view, Light{});
+    processed[n] = {&tiles[n], &vertices[n]};
+  }
+  const BorderStitcher stitcher(database, cut, index, seams, processed);
+  std::map<std::uint32_t, std::pair<TerrainVertices, TerrainSplits>> stitched;
+  for (const std::uint32_t n : nodes) {
+    auto& [of_node, splits] = stitched[cut[n].node.number];
+    of_node = stitcher.vertices(n, splits);
+    (void)stitcher.seamFaces(n, of_node);
+  }
+  return stitched;
+}
+
+TEST(Scheduler, says_ready_only_of_nodes_around_which_nothing_changes_any_more) {
+  SyntheticGridOptions rough = smallArea();
+  rough.columns = rough.rows = 257;
+  int complete = 0, contradicted = 0;
+  std::size_t early = 0, levels = 0;
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    rough.seed = seed;
+    const MemoryDatabase memory = makeDatabase(rough, 8);
+    const Database& database = memory.database;
+    const SeamIndex seams(database);
+    for (int n = 0; n < viewsPerArea(10); ++n) {
+      const ViewTransform view = makeViewTransform(
+          cameraOver(database, 0.2 + 0.05 * n, 0.1 + 0.03 * n, 100 * (1 + n), 20.0 * n, -10, 320, 200),
+          EllipsoidShape{});
+      FrameStatistics::Nodes counts;
+      Scheduler scheduler(database, seams, view, {2.0}, counts);
+      std::map<std::uint32_t, std::pair<TerrainVertices, TerrainSplits>> drawn;
+      const bool ended =
+          stepThrough(scheduler, 2000, 1.5, [&](const auto& cut, const std::vector<std::uint32_t>& ready) {
+            if (!scheduler.complete()) early += ready.size();
+            drawn.merge(stitchedNodes(database, view, seams, cut, ready));
+          });
+      if (!ended) {
+        EXPECT_TRUE(scheduler.contradicted());
+        ++contradicted;
+        continue;
+      }
+      ++complete;
+      const Schedule schedule = scheduler.finish();
+      levels += schedule.coarsest_level > schedule.level ? 1 : 0;
+      EXPECT_LE(schedule.projected_error, 2.0);
+      EXPECT_EQ(counts.visited, counts.empty + counts.opened + counts.out_of_view + counts.beyond_horizon +
+                                    counts.facing_away + counts.drawn);
+      const auto final = stitchedNodes(database, view, seams, schedule.nodes, schedule.front_to_back);
+      ASSERT_EQ(drawn.size(), final.size());
+      for (const auto& [number, expected] : final) {
+        ASSERT_TRUE(drawn.contains(number));
+        const auto& [vertices, splits] = drawn.at(number);
+        EXPECT_TRUE(vertices.position == expected.first.position) << number;
+        EXPECT_EQ(splits.south, expected.second.south);
+        EXPECT_EQ(splits.east, expected.second.east);
+        EXPECT_EQ(splits.north, expected.second.north);
+        EXPECT_EQ(splits.west, expected.second.west);
+      }
+    }
+  }
+  EXPECT_GT(complete, contradicted);
+  EXPECT_GT(early, 100u);
+  EXPECT_GT(levels, 5u);
 }
 
 // Random points in a random sphere, moved by random vectors up to the error, both seen in the picture.
