@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <limits>
 #include <tbb/parallel_for.h>
 
 #include "tests/librender/cut_checks.h"
@@ -177,6 +178,35 @@ RawGrid countryOfTwoErrors(std::int32_t rise) {
     }
   }
   return grid;
+}
+
+// What is said to be drawn before it is ready makes a scheduler contradict itself, which it notices and
+// mends.
+TEST(CrackFree, a_strip_that_reaches_what_is_drawn_is_noticed) {
+  const MemoryDatabase memory = makeDatabaseOf(countryOfTwoErrors(24), 8);
+  const Camera camera{{45.0, -121.947, 3000}, 0, -1.6, 0, 3, 384, 192};
+  const ViewTransform view = makeViewTransform(camera, EllipsoidShape{});
+  const SeamIndex seams(memory.database);
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  int noticed = 0;
+  for (double farthest = 180000; farthest < 240000; farthest += 500) {
+    FrameStatistics::Nodes counts;
+    Scheduler scheduler(memory.database, seams, view, {}, counts);
+    ASSERT_TRUE(scheduler.advance(farthest, {}).ok());
+    std::vector<std::uint32_t> all(scheduler.cut().size());
+    for (std::uint32_t k = 0; k < all.size(); ++k) all[k] = k;
+    scheduler.setDrawn(all);
+    ASSERT_TRUE(scheduler.advance(kFar, {}).ok());
+    if (!scheduler.contradicted()) continue;
+    ++noticed;
+    scheduler.restart();
+    ASSERT_TRUE(scheduler.advance(kFar, {}).ok());
+    EXPECT_FALSE(scheduler.contradicted());
+    EXPECT_LE(scheduler.finish().projected_error, 1);
+    EXPECT_EQ(counts.visited, counts.empty + counts.opened + counts.out_of_view + counts.beyond_horizon +
+                                  counts.facing_away + counts.drawn);
+  }
+  EXPECT_GT(noticed, 0);
 }
 
 TEST(CrackFree, strips_break_the_contract_unless_they_are_tested) {
