@@ -1,5 +1,5 @@
 // Antialiasing: what samples and filters cost, and how far they are from exact integrals.
-//   bench_samples [--smoke] [--json] [--area AREA.dz] [--repeat N] [--no-times]
+//   bench_samples [--smoke] [--json] [--area AREA.dz] [--most SAMPLES] [--repeat N] [--no-times]
 // Errors are of scenes of edges (edge_scenes.h), each filter against its own exact integral over the same
 // polygons: root mean squares in percent of the white. `flicker` is what the light of a thin wire, 0.4 pixel
 // wide, does while the wire moves over a pixel in 32 steps, where exact integrals keep it the same: its
@@ -34,7 +34,7 @@ namespace {
 struct Settings {
   bool smoke = false, json = false, times = true;
   std::string area;
-  int repeats = 7;
+  int repeats = 7, most = 64;  // samples a pixel
 };
 
 struct Row {
@@ -47,7 +47,7 @@ struct Row {
 std::vector<Sampling> samplings(const Settings& settings) {
   std::vector<Sampling> all;
   for (const int count : kSampleCounts) {
-    if (settings.smoke && count > 4) continue;
+    if (count > (settings.smoke ? 4 : settings.most)) continue;
     for (const SamplePattern pattern : {SamplePattern::kOrdered, SamplePattern::kRotated}) {
       if (count == 1 && pattern == SamplePattern::kRotated) continue;
       for (const FilterKind filter : kFilterKinds) all.push_back({count, pattern, filter});
@@ -307,11 +307,14 @@ int main(int argc, char** argv) {
       settings.times = false;
     } else if (argument == "--area" && k + 1 < argc) {
       settings.area = argv[++k];
+    } else if (argument == "--most" && k + 1 < argc && std::atoi(argv[k + 1]) > 0) {
+      settings.most = std::atoi(argv[++k]);
     } else if (argument == "--repeat" && k + 1 < argc && std::atoi(argv[k + 1]) > 0) {
       settings.repeats = std::atoi(argv[++k]);
     } else {
       fmt::print(stderr,
-                 "bench_samples: error: {} is no option: --smoke, --json, --area AREA.dz, --repeat N, "
+                 "bench_samples: error: {} is no option: --smoke, --json, --area AREA.dz, --most SAMPLES, "
+                 "--repeat N, "
                  "--no-times\n",
                  argument);
       return 2;
