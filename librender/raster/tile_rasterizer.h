@@ -8,8 +8,9 @@
 //
 // Pixels lie in blocks of 4 x 4, so that a block is one vector of 16 and one cache line. The least 1/U of
 // every block is kept: blocks that a triangle lies behind are passed over (hierarchical z; Greene 1993),
-// which changes no pixel. Large triangles are tested for 16 blocks at once, outside, inside or across an edge
-// (Abrash 2009), small ones walk their few blocks. The bits are the same on every vector width.
+// which changes no pixel. Which blocks a triangle may show in is found for 4 x 4 of them at once (after Abrash
+// 2009); the blocks of a batch of triangles are then drawn in one loop. The bits are the same on every vector
+// width.
 // Thread-safety: different tiles from different threads.
 #pragma once
 
