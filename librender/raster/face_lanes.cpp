@@ -3,11 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "librender/raster/texture_planes.h"
 #include "librender/scene/view_volume.h"
 
 namespace deltaz {
+
+void moveInside(const FaceLanes& face, double& dj, double& di) {
+  double nearest = std::numeric_limits<double>::infinity(), nearest_j = dj, nearest_i = di;
+  const double *const j = face.corner_j, *const i = face.corner_i;
+  for (std::size_t k = 0; k < face.corners; ++k) {
+    const std::size_t next = k + 1 == face.corners ? 0 : k + 1;
+    const double edge_j = j[next] - j[k], edge_i = i[next] - i[k];
+    const double length = edge_j * edge_j + edge_i * edge_i;
+    const double along = (dj - j[k]) * edge_j + (di - i[k]) * edge_i;
+    const double t = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0;
+    const double on_j = j[k] + t * edge_j, on_i = i[k] + t * edge_i;
+    const double distance = (dj - on_j) * (dj - on_j) + (di - on_i) * (di - on_i);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    nearest_j = on_j;
+    nearest_i = on_i;
+  }
+  dj = nearest_j;
+  di = nearest_i;
+}
 
 FaceLanes faceLanes(const FacePlanes& planes, std::uint16_t grid) {
   FaceLanes lanes{};
@@ -28,6 +49,9 @@ FaceLanes faceLanes(const FacePlanes& planes, std::uint16_t grid) {
   }
   lanes.anchor_j = planes.anchor_j;
   lanes.anchor_i = planes.anchor_i;
+  std::copy(planes.corner_j.begin(), planes.corner_j.end(), lanes.corner_j);
+  std::copy(planes.corner_i.begin(), planes.corner_i.end(), lanes.corner_i);
+  lanes.corners = planes.corners;
   lanes.least = planes.least;
   lanes.greatest = planes.greatest;
   lanes.column = texture.origin.column;
@@ -59,6 +83,11 @@ FaceLanes gridFaceLanes(const ViewTransform& view, const PretiledNode& node, std
   lanes.greatest = std::max({at[0].inverse_u, at[1].inverse_u, at[2].inverse_u});
   const double bj = at[1].j - at[0].j, bi = at[1].i - at[0].i;
   const double cj = at[2].j - at[0].j, ci = at[2].i - at[0].i;
+  lanes.corners = 3;
+  lanes.corner_j[1] = bj;
+  lanes.corner_i[1] = bi;
+  lanes.corner_j[2] = cj;
+  lanes.corner_i[2] = ci;
   const double determinant = bj * ci - cj * bi;
   const double inverse = determinant != 0 ? 1 / determinant : 0;
   const double db = at[1].inverse_u - at[0].inverse_u, dc = at[2].inverse_u - at[0].inverse_u;

@@ -20,6 +20,8 @@ struct alignas(64) FaceLanes {
   double value[kFaceLanes], per_j[kFaceLanes], per_i[kFaceLanes];  // at the anchor, and gradients
   float color[3][4];  // of each vertex: red, green, blue, linear and lit, and intensity
   double anchor_j, anchor_i;
+  double corner_j[4], corner_i[4];  // as FacePlanes
+  std::uint32_t corners;
   double least, greatest;                                        // of 1/U
   double column, row;                                            // of the first vertex
   float least_column, greatest_column, least_row, greatest_row;  // of the face, from the first vertex' on
@@ -32,6 +34,11 @@ struct alignas(64) FaceLanes {
 struct SeenFace {
   std::uint32_t node = 0, face = 0;
 };
+
+// Moves a place beside the face, counted from the anchor, to the nearest one that belongs to it. Samples lie
+// beside a face by what its vertices were snapped, and on a face that is seen edge-on that little may be any
+// depth.
+void moveInside(const FaceLanes& face, double& dj, double& di);
 
 FaceLanes faceLanes(const FacePlanes& planes, std::uint16_t grid);
 

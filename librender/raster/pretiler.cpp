@@ -49,6 +49,14 @@ void setPlanes(const std::array<WeightedScreenVertex, 3>& vertices, FacePlanes& 
       plane(a.weight2 * a.screen.inverse_u, b.weight2 * b.screen.inverse_u, c.weight2 * c.screen.inverse_u);
 }
 
+void setCorners(std::span<const WeightedScreenVertex> corners, FacePlanes& face) {
+  face.corners = static_cast<std::uint32_t>(std::min(corners.size(), face.corner_j.size()));
+  for (std::size_t k = 0; k < face.corners; ++k) {
+    face.corner_j[k] = corners[k].screen.j - face.anchor_j;
+    face.corner_i[k] = corners[k].screen.i - face.anchor_i;
+  }
+}
+
 std::array<float, 3> toFloats(const LinearColor& color) {
   return {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue)};
 }
@@ -156,6 +164,7 @@ FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::
     planes.least = std::min({a, b, c});
     planes.greatest = std::max({a, b, c});
     setPlanes(on_screen, planes);
+    setCorners(on_screen, planes);
     return planes;
   }
   ClipPolygon polygon(unclipped);
@@ -175,6 +184,7 @@ FacePlanes facePlanes(const ViewTransform& view, const PretiledNode& node, std::
       count == 4 && screenArea(corners[0].screen, corners[2].screen, corners[3].screen) >
                         screenArea(corners[0].screen, corners[1].screen, corners[2].screen);
   setPlanes({corners[0], corners[second_half ? 2 : 1], corners[second_half ? 3 : 2]}, planes);
+  setCorners(std::span(corners).first(count), planes);
   return planes;
 }
 

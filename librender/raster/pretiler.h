@@ -51,7 +51,10 @@ struct ScreenPlane {
 struct FacePlanes {
   double anchor_j = 0, anchor_i = 0;  // a projected vertex
   ScreenPlane inverse_u;
-  ScreenPlane weight1, weight2;    // of the face's second and third vertex, times 1/U
+  ScreenPlane weight1, weight2;  // of the face's second and third vertex, times 1/U
+  // Corners of what lies in front of the hither plane, in order, from the anchor, which is the first of them.
+  std::array<double, 4> corner_j{}, corner_i{};
+  std::uint32_t corners = 0;
   double least = 0, greatest = 0;  // 1/U over the vertices of what is in front of the hither plane
   std::array<std::array<float, 3>, 3> color{};     // of each vertex: red, green, blue, linear, lit
   std::array<float, 3> intensity{};                // of each vertex

@@ -78,6 +78,15 @@ void makeRays(const ViewTransform& view, const SampleBatch& batch, BatchLists& l
   }
 }
 
+HWY_INLINE void evaluateAt(const FaceLanes& face, double dj, double di, double* at) {
+  const Doubles from_anchor_j = hn::Set(kDouble, dj), from_anchor_i = hn::Set(kDouble, di);
+  for (std::size_t lane = 0; lane < kFaceLanes; lane += kDoubleLanes) {
+    const Doubles change = hn::Add(hn::Mul(hn::Load(kDouble, face.per_j + lane), from_anchor_j),
+                                   hn::Mul(hn::Load(kDouble, face.per_i + lane), from_anchor_i));
+    hn::Store(hn::Add(hn::Load(kDouble, face.value + lane), change), kDouble, at + lane);
+  }
+}
+
 // The planes of each sample's face, evaluated a sample at a time, since neighbours have different faces.
 template <bool kTextured>
 void evaluatePlanes(const SampleBatch& batch, BatchLists& lists) {
@@ -89,12 +98,13 @@ void evaluatePlanes(const SampleBatch& batch, BatchLists& lists) {
       continue;
     }
     alignas(64) double at[kFaceLanes];
-    const Doubles dj = hn::Set(kDouble, batch.j[n] - face->anchor_j);
-    const Doubles di = hn::Set(kDouble, batch.i[n] - face->anchor_i);
-    for (std::size_t lane = 0; lane < kFaceLanes; lane += kDoubleLanes) {
-      const Doubles change = hn::Add(hn::Mul(hn::Load(kDouble, face->per_j + lane), dj),
-                                     hn::Mul(hn::Load(kDouble, face->per_i + lane), di));
-      hn::Store(hn::Add(hn::Load(kDouble, face->value + lane), change), kDouble, at + lane);
+    double dj = batch.j[n] - face->anchor_j, di = batch.i[n] - face->anchor_i;
+    evaluateAt(*face, dj, di, at);
+    // Weights are below zero beside the face.
+    if (std::min({at[kSecondWeight], at[kThirdWeight],
+                  at[kInverseU] - at[kSecondWeight] - at[kThirdWeight]}) < 0) {
+      moveInside(*face, dj, di);
+      evaluateAt(*face, dj, di, at);
     }
     lists.inverse_u[n] = std::min(std::max(at[kInverseU], face->least), face->greatest);
     lists.second[n] = at[kSecondWeight];

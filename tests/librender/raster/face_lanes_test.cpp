@@ -1,6 +1,9 @@
 #include "librender/raster/face_lanes.h"
 
+#include <array>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 namespace deltaz {
@@ -97,6 +100,47 @@ TEST(FaceLanes, of_the_grid_are_those_of_the_planes_in_general) {
     for (std::size_t n = 0; n < grid.size(); ++n) expectSame(grid[n], list[n]);
   }
   EXPECT_GT(clipped, 10);
+}
+
+TEST(face_lanes, places_beside_a_face_move_to_the_nearest_of_its_edges) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-20, 20), thin(-1e-3, 1e-3), part(0, 1);
+  for (int n = 0; n < 2000; ++n) {
+    // Every other face is a needle: its third corner nearly on the edge of the others.
+    FaceLanes face{};
+    face.corners = 3;
+    face.corner_j[1] = place(random);
+    face.corner_i[1] = place(random);
+    const double along = part(random);
+    face.corner_j[2] = n % 2 == 0 ? place(random) : along * face.corner_j[1] + thin(random);
+    face.corner_i[2] = n % 2 == 0 ? place(random) : along * face.corner_i[1] + thin(random);
+    const double from_j = place(random), from_i = place(random);
+    double j = from_j, i = from_i;
+    moveInside(face, j, i);
+    const double moved = std::hypot(j - from_j, i - from_i);
+    double nearest = std::numeric_limits<double>::infinity(), off_edges = nearest;
+    const std::array<std::array<double, 2>, 3> corner = {
+        {{0, 0}, {face.corner_j[1], face.corner_i[1]}, {face.corner_j[2], face.corner_i[2]}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (int step = 0; step <= 4000; ++step) {
+        const double t = step / 4000.0;
+        const double on_j = corner[k][0] + t * (corner[(k + 1) % 3][0] - corner[k][0]),
+                     on_i = corner[k][1] + t * (corner[(k + 1) % 3][1] - corner[k][1]);
+        nearest = std::min(nearest, std::hypot(on_j - from_j, on_i - from_i));
+        off_edges = std::min(off_edges, std::hypot(on_j - j, on_i - i));
+      }
+    }
+    EXPECT_LE(moved, nearest + 1e-12);
+    EXPECT_LT(off_edges, 0.01);
+  }
+}
+
+TEST(face_lanes, places_beside_a_face_that_is_all_clipped_stay) {
+  const FaceLanes face{};
+  double j = 3, i = -2;
+  moveInside(face, j, i);
+  EXPECT_EQ(j, 3);
+  EXPECT_EQ(i, -2);
 }
 
 }  // namespace

@@ -20,11 +20,12 @@ constexpr int kLeafCells = 16;
 MemoryDatabase patchwork() {
   return makeTexturedDatabase({syntheticGrid(smallArea())}, kLeafCells, -1, [](auto, double c, double r) {
     const auto x = static_cast<int>(std::floor(c * 4)), y = static_cast<int>(std::floor(r * 4));
-    return std::array<std::uint8_t, 4>{static_cast<std::uint8_t>(x * 37), static_cast<std::uint8_t>(y * 91),
-                                       static_cast<std::uint8_t>(x * y * 13),
-                                       static_cast<std::uint8_t>((x / 9 + y / 7) % 3 == 0 ? 0
-                                                                 : (x * 5 + y) % 3 == 0   ? 120
-                                                                                          : 255)};
+    return std::array<std::uint8_t, 4>{
+        static_cast<std::uint8_t>(x * 37), static_cast<std::uint8_t>(y * 91),
+        static_cast<std::uint8_t>(static_cast<unsigned>(x) * static_cast<unsigned>(y) * 13U),
+        static_cast<std::uint8_t>((x / 9 + y / 7) % 3 == 0 ? 0
+                                  : (x * 5 + y) % 3 == 0   ? 120
+                                                           : 255)};
   });
 }
 
