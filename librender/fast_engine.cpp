@@ -49,6 +49,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
   const Schedule schedule = scheduler.finish();
   statistics.level = schedule.level;
   statistics.coarsest_level = schedule.coarsest_level;
+  statistics.full_resolution = schedule.full_resolution;
 
   DELTAZ_TRY_ASSIGN(const PoseTable poses, PoseTable::of(database, options.poses));
   DELTAZ_TRY_ASSIGN(const ModelSchedule models,

@@ -15,16 +15,20 @@
 
 namespace deltaz {
 
+// Why a node is not drawn.
+enum class Unseen : std::uint8_t { kNot, kOutOfView, kBeyondHorizon, kFacingAway, kOccluded };
+
 struct CutNode {
   Node node;
-  bool in_view = false;    // drawn; nothing of the others can be seen
-  bool waiting = false;    // while the cut is made: not in view yet, since nobody has looked that far
-  bool occluded = false;   // in view, but hidden by what lies before it
-  bool drawn = false;      // while the cut is made
-  bool frozen = false;     // while the cut is made: drawn, or beside what is drawn
-  double distance = 0;     // from the eye; nothing of it is nearer, metres
-  bool seamed = false;     // a seam touches it (SeamState::kTouched)
-  NodeVolume volume = {};  // of terrain nodes
+  bool in_view = false;          // drawn; nothing of the others can be seen
+  bool waiting = false;          // while the cut is made: not in view yet, since nobody has looked that far
+  Unseen unseen = Unseen::kNot;  // the first reason that was found
+  bool occluded = false;         // in view, but hidden by what lies before it
+  bool drawn = false;            // while the cut is made
+  bool frozen = false;           // while the cut is made: drawn, or beside what is drawn
+  double distance = 0;           // from the eye; nothing of it is nearer, metres
+  bool seamed = false;           // a seam touches it (SeamState::kTouched)
+  NodeVolume volume = {};        // of terrain nodes
 };
 
 enum class Side : std::uint8_t { kSouth, kEast, kNorth, kWest };

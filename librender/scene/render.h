@@ -82,6 +82,14 @@ struct FrameStatistics {
     std::uint64_t visited = 0, out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, drawn = 0;
     std::uint64_t empty = 0, opened = 0;
   } nodes;
+  // What became of the full-resolution triangles of all nodes that have heights, before a post was read: by
+  // the fate of the node above them. `coarser` are those that coarser levels spared.
+  struct FullResolution {
+    std::uint64_t out_of_view = 0, beyond_horizon = 0, facing_away = 0, occluded = 0, coarser = 0, drawn = 0;
+    std::uint64_t sum() const {
+      return out_of_view + beyond_horizon + facing_away + occluded + coarser + drawn;
+    }
+  } full_resolution;
   // Placed models: those read from the file, those of them that no part of shows in the picture, those whose
   // parts in the picture are all hidden by ground, and those drawn, part or whole. A page of placements that
   // is out of view is not read.

@@ -69,17 +69,20 @@ bool Scheduler::isFineEnough(const CutNode& candidate) const {
 }
 
 // False, and counted, if nothing of the node can be seen.
-bool Scheduler::maySee(const CutNode& candidate) {
+bool Scheduler::maySee(CutNode& candidate) {
   if (view_volume_.isOutside(candidate.volume)) {
     ++statistics_.out_of_view;
+    candidate.unseen = Unseen::kOutOfView;
     return false;
   }
   if (horizon_.hides(candidate.volume)) {
     ++statistics_.beyond_horizon;
+    candidate.unseen = Unseen::kBeyondHorizon;
     return false;
   }
   if (facesAway(candidate.node, view_.eye)) {
     ++statistics_.facing_away;
+    candidate.unseen = Unseen::kFacingAway;
     return false;
   }
   return true;
@@ -95,6 +98,7 @@ void Scheduler::look(CutNode& candidate) {
   if (candidate.in_view && hides_ && hides_(candidate.volume)) {
     ++statistics_.occluded;
     candidate.in_view = false;
+    candidate.unseen = Unseen::kOccluded;
   }
 }
 
@@ -113,7 +117,9 @@ Status Scheduler::refine(std::vector<Node>& waiting) {
         ++statistics_.empty;
         continue;
       }
-      CutNode candidate{child, true};
+      CutNode candidate;
+      candidate.node = child;
+      candidate.in_view = true;
       candidate.seamed = seam == SeamState::kTouched;
       if (terrain) {
         candidate.volume = volumeOf(child, database_.grid(child.record.grid), !candidate.seamed);
@@ -302,7 +308,44 @@ void Scheduler::setDrawn(std::span<const std::uint32_t> nodes) {
 
 void Scheduler::setOccluded(std::uint32_t node) {
   nodes_[node].occluded = true;
+  nodes_[node].unseen = Unseen::kOccluded;
   ++statistics_.occluded;
+}
+
+void Scheduler::countTriangles(const CutNode& node, FrameStatistics::FullResolution& counts) const {
+  const NodePosition position = positionOf(node.node.record);
+  const GridGeometry& grid = database_.grid(position.grid);
+  const std::int64_t leaf = grid.header().leaf_cells;
+  const auto triangles = [&](int level) {
+    // Posts of the level under the node, within the area.
+    const std::int64_t span = leaf << (position.level - level);
+    const auto cells = [&](std::int64_t place, PostRange inside) {
+      return std::max<std::int64_t>(
+          0, std::min((place + 1) * span, inside.end - 1) - std::max(place * span, inside.begin));
+    };
+    return static_cast<std::uint64_t>(2 * cells(position.x, grid.columnsAt(level)) *
+                                      cells(position.y, grid.rowsAt(level)));
+  };
+  const std::uint64_t all = triangles(0);
+  switch (node.unseen) {
+    case Unseen::kOutOfView:
+      counts.out_of_view += all;
+      return;
+    case Unseen::kBeyondHorizon:
+      counts.beyond_horizon += all;
+      return;
+    case Unseen::kFacingAway:
+      counts.facing_away += all;
+      return;
+    case Unseen::kOccluded:
+      counts.occluded += all;
+      return;
+    case Unseen::kNot:
+      break;
+  }
+  const std::uint64_t drawn = std::min(all, triangles(position.level));
+  counts.drawn += drawn;
+  counts.coarser += all - drawn;
 }
 
 Schedule Scheduler::finish() {
@@ -312,6 +355,7 @@ Schedule Scheduler::finish() {
   std::optional<StripErrors> strips;
   bool first = true;
   for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    countTriangles(nodes_[n], schedule.full_resolution);
     if (!nodes_[n].in_view || nodes_[n].occluded) continue;
     const int level = nodes_[n].node.record.level;
     schedule.level = first ? level : std::min(schedule.level, level);

@@ -36,6 +36,7 @@ namespace deltaz {
 struct Schedule {
   int level = 0, coarsest_level = 0;  // of the nodes drawn
   double projected_error = 0;         // pixels: the largest bound of what is drawn, strips included
+  FrameStatistics::FullResolution full_resolution;
   // The cut, in the order of the record numbers. It covers all of the area that has heights, but for what
   // lies under other grids.
   std::vector<CutNode> nodes;
@@ -103,7 +104,7 @@ class Scheduler {
 
   double ownError(const CutNode& candidate) const;
   bool isFineEnough(const CutNode& candidate) const;
-  bool maySee(const CutNode& candidate);
+  bool maySee(CutNode& candidate);
   void look(CutNode& candidate);
   Status refine(std::vector<Node>& waiting);
   Status lookFarther();
@@ -112,6 +113,7 @@ class Scheduler {
   void remove(const std::unordered_set<std::uint32_t>& removed,
               const std::unordered_set<std::uint32_t>& changed);
   std::vector<std::uint32_t> bordersOf(const CutIndex& index, std::uint32_t node) const;
+  void countTriangles(const CutNode& node, FrameStatistics::FullResolution& counts) const;
   void sortFrontToBack(std::vector<std::uint32_t>& nodes) const;
 
   const Database& database_;

@@ -51,6 +51,11 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
                    {"drawn", first.nodes.drawn},
                    {"opened", first.nodes.opened},
                    {"empty", first.nodes.empty}};
+  const FrameStatistics::FullResolution& full = first.full_resolution;
+  json["full_resolution_triangles"] = {
+      {"out_of_view", full.out_of_view}, {"beyond_horizon", full.beyond_horizon},
+      {"facing_away", full.facing_away}, {"occluded", full.occluded},
+      {"coarser", full.coarser},         {"drawn", full.drawn}};
   if (lod == LodScheme::kReport) json["objects"] = objectsJson(first.objects);
   json["models"] = {{"visited", first.models.visited},
                     {"out_of_view", first.models.out_of_view},
