@@ -67,6 +67,29 @@ TEST(Scheduler, cuts_the_area_once_and_keeps_every_node_in_view_within_the_toler
   EXPECT_GT(chosen.size(), 1u);
 }
 
+TEST(Scheduler, says_of_every_full_resolution_triangle_what_became_of_it) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  const GridGeometry& grid = area.database.grid(0);
+  const auto all =
+      static_cast<std::uint64_t>(2 * (grid.columnsAt(0).size() - 1) * (grid.rowsAt(0).size() - 1));
+  for (const double above : {50.0, 500.0, 20000.0, 1000000.0}) {
+    for (const double tolerance : {0.0, 4.0, 1000.0}) {
+      const Camera camera =
+          cameraOver(area.database, 0.5, 0.2, above, 0, above < 1000 ? -5.0 : -80.0, 640, 400);
+      FrameStatistics::Nodes counts;
+      const Schedule schedule =
+          scheduleNodes(area.database, SeamIndex(area.database), makeViewTransform(camera, EllipsoidShape{}),
+                        {tolerance}, counts)
+              .value();
+      const FrameStatistics::FullResolution& triangles = schedule.full_resolution;
+      EXPECT_EQ(triangles.sum(), all) << above << ' ' << tolerance;
+      EXPECT_EQ(triangles.out_of_view > 0, counts.out_of_view > 0);
+      EXPECT_EQ(triangles.beyond_horizon > 0, counts.beyond_horizon > 0);
+      EXPECT_EQ(triangles.coarser > 0, schedule.coarsest_level > 0);
+    }
+  }
+}
+
 TEST(Scheduler, uses_coarser_nodes_farther_away) {
   SyntheticGridOptions options = smallArea();
   options.columns = options.rows = 385;
