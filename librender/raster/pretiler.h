@@ -65,7 +65,7 @@ struct FacePlanes {
 
   // 1/U at a sample. Within the vertices' range, so that slivers, whose samples may lie just outside the
   // unsnapped triangle, cannot extrapolate.
-  double inverseDepthAt(int j, int i) const {
+  double inverseDepthAt(double j, double i) const {
     const double d = inverse_u.at(j - anchor_j, i - anchor_i);
     return d < least ? least : d > greatest ? greatest : d;
   }

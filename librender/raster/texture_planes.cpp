@@ -28,7 +28,7 @@ double TextureFootprint::size() const {
   return std::sqrt(std::max(squared(per_j), squared(per_i)));
 }
 
-TextureFootprint footprintAt(const FacePlanes& face, int j, int i, double inverse_u) {
+TextureFootprint footprintAt(const FacePlanes& face, double j, double i, double inverse_u) {
   const TexturePlanes planes = texturePlanes(face);
   const double dj = j - face.anchor_j, di = i - face.anchor_i, u = 1 / inverse_u;
   const double column = planes.column.at(dj, di) * u, row = planes.row.at(dj, di) * u;

@@ -30,6 +30,6 @@ struct TextureFootprint {
 
 // `inverse_u` as of FacePlanes::inverseDepthAt(j, i). The place is kept within the face's columns and rows,
 // so that samples of slivers, which may lie just outside the unsnapped triangle, cannot extrapolate.
-TextureFootprint footprintAt(const FacePlanes& face, int j, int i, double inverse_u);
+TextureFootprint footprintAt(const FacePlanes& face, double j, double i, double inverse_u);
 
 }  // namespace deltaz

@@ -40,14 +40,23 @@ Expected expectedAt(const Environment& environment, TextureReader& reader, const
                     double i) {
   const Vector3 ray = environment.view.ray(j, i);
   const double sea_u = environment.sea.depth(ray);
-  const double inverse_u =
-      face == nullptr ? 0 : face->inverseDepthAt(static_cast<int>(j), static_cast<int>(i));
+  // Beside the face, what is nearest to there.
+  double dj = 0, di = 0, inverse_u = 0;
+  if (face != nullptr) {
+    dj = j - face->anchor_j;
+    di = i - face->anchor_i;
+    const double beside_second = face->weight1.at(dj, di), beside_third = face->weight2.at(dj, di);
+    if (std::min({beside_second, beside_third, face->inverse_u.at(dj, di) - beside_second - beside_third}) <
+        0)
+      moveInside(faceLanes(*face, 0), dj, di);
+    inverse_u = std::clamp(face->inverse_u.at(dj, di), face->least, face->greatest);
+  }
   if (face == nullptr || 1 / inverse_u > sea_u) {
     if (std::isinf(sea_u)) return {Surface::kSky, sea_u, environment.atmosphere.sky(ray)};
     return {Surface::kSea, sea_u,
             environment.atmosphere.throughHaze(environment.sea.color(ray, sea_u), ray, sea_u)};
   }
-  const double dj = j - face->anchor_j, di = i - face->anchor_i, u = 1 / inverse_u;
+  const double u = 1 / inverse_u;
   double second = std::clamp(face->weight1.at(dj, di) * u, 0.0, 1.0);
   double third = std::clamp(face->weight2.at(dj, di) * u, 0.0, 1.0);
   const double sum = std::max(1.0, second + third);
@@ -62,7 +71,7 @@ Expected expectedAt(const Environment& environment, TextureReader& reader, const
   LinearColor color{channel(0), channel(1), channel(2)};
   const double intensity = mixed(face->intensity[0], face->intensity[1], face->intensity[2]);
   const auto request = textureRequest(
-      *environment.color_map, 0, footprintAt(*face, static_cast<int>(j), static_cast<int>(i), inverse_u));
+      *environment.color_map, 0, footprintAt(*face, face->anchor_j + dj, face->anchor_i + di, inverse_u));
   if (request && face->surface == Surface::kTerrain) {
     const TextureSample texture = trilinearSample(reader, *request);
     color = color * (1 - texture.cover) + texture.color * intensity;
