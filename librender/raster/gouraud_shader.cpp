@@ -3,7 +3,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/gouraud_shader.cpp"
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
