@@ -1,9 +1,10 @@
 #include "tools/common/scatter_svg.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
+
+#include "tools/common/svg_parts.h"
 
 namespace deltaz {
 
@@ -13,32 +14,6 @@ constexpr double kPanelWidth = 600, kPanelHeight = 460, kTitleHeight = 40;
 constexpr double kLeft = 70, kRight = 24, kTop = 36, kBottom = 56;
 constexpr double kZeroBand = 26;  // below the least value of a logarithmic axis
 constexpr double kCharacter = 6.7, kLine = 13;
-// Distinguishable with most kinds of colour vision, and by shape.
-constexpr std::array kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 // A logarithmic axis over at least half a decade.
 class Axis {
  public:
@@ -87,30 +62,6 @@ struct Box {
   }
 };
 
-std::string marker(std::size_t group, double x, double y) {
-  const char* const color = kColors[group % kColors.size()];
-  switch (group % 3) {
-    case 0:
-      return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"/>\n", x, y, color);
-    case 1:
-      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" height=\"7\" fill=\"{}\"/>\n", x - 3.5,
-                         y - 3.5, color);
-    default:
-      return fmt::format("<path d=\"M{:.1f} {:.1f} l4.5 8 h-9 z\" fill=\"{}\"/>\n", x, y - 5, color);
-  }
-}
-
-std::string textAt(double x, double y, const std::string& anchor, const std::string& text,
-                   const std::string& more = {}) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                     escaped(text));
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* stroke) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1,
-                     y1, x2, y2, stroke);
-}
-
 class PanelDrawing {
  public:
   PanelDrawing(const ScatterPanel& panel, double offset)
@@ -125,32 +76,32 @@ class PanelDrawing {
 
   std::string draw() {
     std::string svg =
-        textAt((left_ + right_) / 2, top_ - 12, "middle", panel_.title, " font-weight=\"bold\"");
+        svgText((left_ + right_) / 2, top_ - 12, "middle", panel_.title, " font-weight=\"bold\"");
     for (const double tick : x_.ticks()) {
-      svg += line(x_.place(tick), top_, x_.place(tick), bottom_, "#dddddd");
-      svg += textAt(x_.place(tick), bottom_ + 16, "middle", fmt::format("{:.6g}", tick));
+      svg += svgLine(x_.place(tick), top_, x_.place(tick), bottom_, "#dddddd");
+      svg += svgText(x_.place(tick), bottom_ + 16, "middle", fmt::format("{:.6g}", tick));
     }
     for (const double tick : y_.ticks()) {
-      svg += line(left_, y_.place(tick), right_, y_.place(tick), "#dddddd");
-      svg += textAt(left_ - 6, y_.place(tick) + 4, "end", fmt::format("{:.6g}", tick));
+      svg += svgLine(left_, y_.place(tick), right_, y_.place(tick), "#dddddd");
+      svg += svgText(left_ - 6, y_.place(tick) + 4, "end", fmt::format("{:.6g}", tick));
     }
     if (hasZero()) {
-      svg += textAt(left_ - 6, y_.place(0) + 4, "end", "0");
+      svg += svgText(left_ - 6, y_.place(0) + 4, "end", "0");
       // Below this line the axis is none.
-      svg += line(left_, bottom_ - kZeroBand, right_, bottom_ - kZeroBand, "#999999");
+      svg += svgLine(left_, bottom_ - kZeroBand, right_, bottom_ - kZeroBand, "#999999");
     }
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
         "stroke=\"#444444\"/>\n",
         left_, top_, right_ - left_, bottom_ - top_);
-    svg += textAt((left_ + right_) / 2, bottom_ + 38, "middle", panel_.x_label);
+    svg += svgText((left_ + right_) / 2, bottom_ + 38, "middle", panel_.x_label);
     const double middle = (top_ + bottom_) / 2;
-    svg += textAt(left_ - 48, middle, "middle", panel_.y_label,
-                  fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", left_ - 48, middle));
+    svg += svgText(left_ - 48, middle, "middle", panel_.y_label,
+                   fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", left_ - 48, middle));
     svg += frontLine();
     for (const ScatterPoint& point : panel_.points) {
       if (!shown(point)) continue;
-      svg += marker(point.group, x_.place(point.x), y_.place(point.y));
+      svg += svgMarker(point.group, x_.place(point.x), y_.place(point.y));
       taken_.push_back(around(point));
     }
     svg += legend();
@@ -186,8 +137,7 @@ class PanelDrawing {
     }
     if (points.empty()) return {};
     points.pop_back();
-    return fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"#888888\" stroke-width=\"1.5\"/>\n",
-                       points);
+    return svgPolyline(points, "#888888");
   }
 
   std::string legend() {
@@ -204,7 +154,8 @@ class PanelDrawing {
         box.left, box.top, width, height);
     for (std::size_t group = 0; group < panel_.groups.size(); ++group) {
       const double y = box.top + 12 + 16 * static_cast<double>(group);
-      svg += marker(group, box.left + 10, y) + textAt(box.left + 20, y + 4, "start", panel_.groups[group]);
+      svg +=
+          svgMarker(group, box.left + 10, y) + svgText(box.left + 20, y + 4, "start", panel_.groups[group]);
     }
     return svg;
   }
@@ -236,7 +187,7 @@ class PanelDrawing {
       break;
     }
     taken_.push_back({best.left, best.baseline - kLine + 2, best.left + width, best.baseline + 3});
-    return textAt(best.left, best.baseline, "start", point.label);
+    return svgText(best.left, best.baseline, "start", point.label);
   }
 
   const ScatterPanel& panel_;
@@ -249,14 +200,11 @@ class PanelDrawing {
 
 std::string scatterSvg(const std::string& title, std::span<const ScatterPanel> panels) {
   const double width = kPanelWidth * static_cast<double>(panels.size()), height = kTitleHeight + kPanelHeight;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-      width, height);
-  svg += textAt(width / 2, 26, "middle", title, " font-size=\"15\"");
+  std::string svg = svgBegin(width, height);
+  svg += svgText(width / 2, 26, "middle", title, " font-size=\"15\"");
   for (std::size_t k = 0; k < panels.size(); ++k)
     svg += PanelDrawing(panels[k], kPanelWidth * static_cast<double>(k)).draw();
-  return svg + "</svg>\n";
+  return svg + kSvgEnd;
 }
 
 }  // namespace deltaz
