@@ -422,8 +422,10 @@ Camera randomView(const Database& database, std::mt19937& random, int width, int
   double pitch = uniform(-60, 15);
   if (kind == 2 || kind == 4) pitch = -90;
   if (kind == 5) pitch = 90;
-  Camera camera = cameraOver(database, uniform(-margin, 1 + margin), uniform(-margin, 1 + margin), above,
-                             uniform(0, 360), pitch, width, height);
+  // One after the other: compilers choose the order of arguments themselves.
+  const double heading = uniform(0, 360);
+  const double y = uniform(-margin, 1 + margin), x = uniform(-margin, 1 + margin);
+  Camera camera = cameraOver(database, x, y, above, heading, pitch, width, height);
   camera.eye.latitude = std::clamp(camera.eye.latitude, -90.0, 90.0);
   if (kind == 6) camera.eye.height = database.area().lowest_height - uniform(0, 500);  // under water
   camera.field_of_view = kind == 7 ? uniform(1, 10) : uniform(30, 110);

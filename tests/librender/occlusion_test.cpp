@@ -20,8 +20,11 @@ Camera lowView(const Database& database, std::mt19937& random) {
   const auto fraction = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
-  return cameraOver(database, fraction(0.1, 0.9), fraction(0.1, 0.9), std::pow(10.0, fraction(0.3, 3.3)),
-                    fraction(0, 360), fraction(-40, 5), 160, 120);
+  // One after the other: compilers choose the order of arguments themselves.
+  const double pitch = fraction(-40, 5), heading = fraction(0, 360);
+  const double above = std::pow(10.0, fraction(0.3, 3.3));
+  const double y = fraction(0.1, 0.9), x = fraction(0.1, 0.9);
+  return cameraOver(database, x, y, above, heading, pitch, 160, 120);
 }
 
 void expectSamePicture(const Picture& a, const Picture& b, const Camera& camera) {
