@@ -8,5 +8,5 @@
 set -eu
 cd "$(dirname "$0")/.."
 cmake --preset release -DDELTAZ_BUILD_TESTS=ON
-cmake --build --preset release --target dense_sampling_test check_fault_test librender_picture_test librender_test dbbuild dbview dbcheck reseal_area -j "${JOBS:-$(nproc)}"
+cmake --build --preset release --target ars_test dense_sampling_test check_fault_test librender_picture_test librender_test dbbuild dbview dbcheck reseal_area -j "${JOBS:-$(nproc)}"
 exec ctest --test-dir build/release -C Soak -L soak --no-tests=error --verbose "$@"

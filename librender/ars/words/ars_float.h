@@ -86,8 +86,8 @@ struct FloatFormat {
     return round(sum, rounding, (a - a_part) + (b - b_part));
   }
 
-  // The word that stands for a number of this format, and back. Words whose mantissa is not normalised, and
-  // minus zero, have a value too.
+  // The word that stands for a number of this format, and the number that any word stands for. Minus zero and
+  // what is not normalised have theirs too; below the least normalised number it is 0.
   constexpr std::uint32_t encode(double number) const {
     if (number == 0) return hidden() ? exponentField(leastWritten()) << (mantissa_bits + 1) : 0;
     const bool negative = number < 0;
@@ -122,7 +122,7 @@ struct FloatFormat {
                         ? -significand
                         : significand - (std::int64_t{1} << precision());
     if (significand == 0) return 0;
-    return static_cast<double>(significand) * powerOfTwo(exponent - shift() - (precision() - 1));
+    return inRange(static_cast<double>(significand) * powerOfTwo(exponent - shift() - (precision() - 1)));
   }
 
  private:
