@@ -2,13 +2,20 @@
 
 namespace deltaz::ars {
 
+TilingCounts tileTriangle(const TilerSetup& setup, const NumberProfile& numbers,
+                          std::vector<PixelPacket>& pixels) {
+  return placePixels(setup, numbers, [&](std::size_t count) {
+    pixels.resize(pixels.size() + count);
+    return pixels.data() + (pixels.size() - count);
+  });
+}
+
 TilingCounts tileTriangles(std::span<const TriangleWords> triangles, const TilerConfiguration& configuration,
                            std::vector<PixelPacket>& pixels) {
   TilingCounts counts;
   for (const TriangleWords& words : triangles) {
     const TilerSetup setup = setUpTriangle(decodeTriangleWords(words, configuration.numbers), configuration);
-    counts += forEachPixel(setup, configuration.numbers,
-                           [&](const PixelPacket& pixel) { pixels.push_back(pixel); });
+    counts += tileTriangle(setup, configuration.numbers, pixels);
   }
   return counts;
 }

@@ -41,83 +41,108 @@ struct StepSpan {
   int first = 0, last = -1;
 };
 
-// The steps 0..pixels at which p + step * slope >= 0 for all three edges.
+// What one edge allows on each line after the other: p + step * slope >= 0 holds from a step on, or up to
+// one. The bound moves by a whole number of steps a line, and by one more whenever the remainder is full:
+// exact, without a division a line. slope is not 0.
 template <typename Integer>
-StepSpan validSteps(const std::array<Integer, 3>& p, const std::array<Integer, 3>& slope, int pixels) {
-  StepSpan span{.first = 0, .last = pixels};
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (slope[k] > 0) {
-      if (p[k] < 0) {
-        const Integer first = (slope[k] - 1 - p[k]) / slope[k];
-        span.first = first > pixels ? pixels + 1 : std::max(span.first, static_cast<int>(first));
-      }
-    } else if (p[k] < 0) {
-      return {};
-    } else if (slope[k] < 0) {
-      const Integer last = p[k] / -slope[k];
-      if (last < pixels) span.last = std::min(span.last, static_cast<int>(last));
-    }
+class EdgeBound {
+ public:
+  EdgeBound() = default;
+  EdgeBound(Integer p, Integer line, Integer slope, int pixels) : divisor_(slope < 0 ? -slope : slope) {
+    const Integer quotient = floorDivide(p, divisor_);
+    remainder_ = p - quotient * divisor_;
+    whole_ = floorDivide(line, divisor_);
+    part_ = line - whole_ * divisor_;
+    const bool lower = slope > 0;
+    bound_ = lower ? -quotient : quotient;
+    sign_ = lower ? -1 : 1;
+    lower_mask_ = lower ? -1 : 0;
+    free_end_ = lower ? pixels : 0;
   }
-  return span;
-}
+  Integer first() const { return bound_ & lower_mask_; }
+  Integer last() const { return (bound_ & ~lower_mask_) + free_end_; }
+  void nextLine() {
+    remainder_ += part_;
+    const bool full = remainder_ >= divisor_;
+    remainder_ -= full ? divisor_ : 0;
+    bound_ += sign_ * (whole_ + (full ? 1 : 0));
+  }
+
+ private:
+  static Integer floorDivide(Integer a, Integer b) { return a / b - (a % b < 0 ? 1 : 0); }
+  Integer bound_ = 0, remainder_ = 0, divisor_ = 1, whole_ = 0, part_ = 0, sign_ = 1, lower_mask_ = 0,
+          free_end_ = 0;
+};
 
 // Calls visit(line, span) for each line that has valid pixels; lines and spans count from the corner.
 template <typename Integer, typename Visit>
 TilingCounts forEachSpanOf(const TilerSetup& setup, Visit&& visit) {
-  std::array<Integer, 3> p{}, line_slope{}, slope{};
+  std::array<EdgeBound<Integer>, 3> edges;
+  int first_line = 0, last_line = setup.lines;
   for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = static_cast<Integer>(setup.p_start[k]);
-    line_slope[k] = static_cast<Integer>(setup.p_line[k]);
-    slope[k] = static_cast<Integer>(setup.p_pixel[k]);
+    const auto p = static_cast<Integer>(setup.p_start[k]), line = static_cast<Integer>(setup.p_line[k]);
+    if (setup.p_pixel[k] != 0) {
+      edges[k] = EdgeBound<Integer>(p, line, static_cast<Integer>(setup.p_pixel[k]), setup.pixels);
+      continue;
+    }
+    // An edge along the lines takes or leaves whole ones.
+    edges[k] = EdgeBound<Integer>(0, 0, 1, setup.pixels);
+    while (first_line <= setup.lines && p + first_line * line < 0 && line > 0) ++first_line;
+    while (last_line >= 0 && p + last_line * line < 0 && line <= 0) --last_line;
   }
   TilingCounts counts{.triangles = 1, .lines = setup.lines + 1};
   int start = 0;  // where the machine begins a line: at the first valid pixel of the one before
   for (int line = 0; line <= setup.lines; ++line) {
-    StepSpan span = validSteps(p, slope, setup.pixels);
-    span.first = std::max(span.first, start);
-    if (span.first > span.last) {
+    Integer first = start, last = setup.pixels;
+    for (EdgeBound<Integer>& edge : edges) {
+      first = std::max(first, edge.first());
+      last = std::min(last, edge.last());
+      edge.nextLine();
+    }
+    if (first > last || line < first_line || line > last_line) {
       // The whole rest of the line is looked through.
       counts.sampled += setup.pixels - start + 1;
       ++counts.empty_lines;
-    } else {
-      // The pixel behind the last ends the line, unless the box does.
-      counts.sampled += std::min(span.last + 1, setup.pixels) - start + 1;
-      counts.tiled += span.last - span.first + 1;
-      start = span.first;
-      visit(line, span);
+      continue;
     }
-    for (std::size_t k = 0; k < 3; ++k) p[k] += line_slope[k];
+    const StepSpan span{.first = static_cast<int>(first), .last = static_cast<int>(last)};
+    // The pixel behind the last ends the line, unless the box does.
+    counts.sampled += std::min(span.last + 1, setup.pixels) - start + 1;
+    counts.tiled += span.last - span.first + 1;
+    start = span.first;
+    visit(line, span);
   }
   return counts;
 }
 
 template <typename Visit>
 TilingCounts forEachSpan(const TilerSetup& setup, Visit&& visit) {
-  // P of the machine has 28 bits, with one line beyond the box; finer vertices have more.
-  constexpr std::int64_t kLimit = std::int64_t{1} << 28;
+  // P of the machine has 28 bits, with a line or two beyond the box; finer vertices have more.
+  constexpr std::int64_t kStart = std::int64_t{1} << 28, kStep = std::int64_t{1} << 18;
   bool narrow = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    narrow = narrow && std::max(setup.p_start[k], -setup.p_start[k]) < kLimit &&
-             std::max(setup.p_line[k], -setup.p_line[k]) < (kLimit >> 9);
+    narrow = narrow && std::max(setup.p_start[k], -setup.p_start[k]) < kStart &&
+             std::max(setup.p_line[k], -setup.p_line[k]) < kStep &&
+             std::max(setup.p_pixel[k], -setup.p_pixel[k]) < kStep;
   }
   return narrow ? forEachSpanOf<std::int32_t>(setup, visit) : forEachSpanOf<std::int64_t>(setup, visit);
 }
 
-// Calls visit(const PixelPacket&) for each valid pixel, in the order of tiling.
-template <typename Visit>
-TilingCounts forEachPixel(const TilerSetup& setup, const NumberProfile& numbers, Visit&& visit) {
+// Asks place(count) for each span, in the order of tiling, where its pixels go, and writes them there.
+template <typename Place>
+TilingCounts placePixels(const TilerSetup& setup, const NumberProfile& numbers, Place&& place) {
   const auto with = [&](auto accumulator) {
     return forEachSpan(setup, [&](int line, StepSpan span) {
       accumulator.beginLine(line);
-      PixelPacket packet;
-      packet.i = static_cast<std::uint16_t>(setup.i_start + line * setup.i_step);
-      packet.background = setup.background;
+      PixelPacket* out = place(static_cast<std::size_t>(span.last - span.first + 1));
+      const auto i = static_cast<std::uint16_t>(setup.i_start + line * setup.i_step);
       for (int step = span.first; step <= span.last; ++step) {
         const PixelValues values = accumulator.at(step);
-        packet.j = static_cast<std::uint16_t>(setup.j_start + step * setup.j_step);
-        packet.color = values.color;
-        packet.depth = values.depth;
-        visit(packet);
+        *out++ = {.i = i,
+                  .j = static_cast<std::uint16_t>(setup.j_start + step * setup.j_step),
+                  .color = values.color,
+                  .background = setup.background,
+                  .depth = values.depth};
       }
     });
   };
@@ -125,7 +150,11 @@ TilingCounts forEachPixel(const TilerSetup& setup, const NumberProfile& numbers,
                                 : with(ProfileAccumulator(setup, numbers));
 }
 
-// Appends the pixels of triangles, in order. Words are sound (checkTriangleWords).
+// Appends the pixels of a triangle in the order of tiling.
+TilingCounts tileTriangle(const TilerSetup& setup, const NumberProfile& numbers,
+                          std::vector<PixelPacket>& pixels);
+
+// The same for one triangle after the other. Words are sound (checkTriangleWords).
 TilingCounts tileTriangles(std::span<const TriangleWords> triangles, const TilerConfiguration& configuration,
                            std::vector<PixelPacket>& pixels);
 

@@ -30,6 +30,16 @@ bool hasItsCorner(const TriangleVariables& triangle) {
   return std::find(v.begin(), v.end(), TriangleVariables::Vertex{i, j}) != v.end();
 }
 
+inline void decodePlanes(const TriangleWords& words, const FloatFormat& color, const FloatFormat& depth,
+                         TriangleVariables& triangle) {
+  triangle.color = color.decode(words[3] & 0xFFFF);
+  triangle.color_i = color.decode(words[4] & 0xFFFF);
+  triangle.color_j = color.decode(words[4] >> 16);
+  triangle.depth = depth.decode(words[5]);
+  triangle.depth_i = depth.decode(words[6]);
+  triangle.depth_j = depth.decode(words[7]);
+}
+
 }  // namespace
 
 TriangleWords encodeTriangleWords(const TriangleVariables& triangle, const NumberProfile& profile) {
@@ -60,12 +70,12 @@ TriangleVariables decodeTriangleWords(const TriangleWords& words, const NumberPr
   triangle.corner = static_cast<Corner>(words[3] >> kCornerShift & 3);
   triangle.oversample = (words[3] >> kOversampleBit & 1) != 0;
   triangle.background = (words[3] >> kBackgroundBit & 1) != 0;
-  triangle.color = profile.color.decode(words[3] & 0xFFFF);
-  triangle.color_i = profile.color.decode(words[4] & 0xFFFF);
-  triangle.color_j = profile.color.decode(words[4] >> 16);
-  triangle.depth = profile.depth_plane.decode(words[5]);
-  triangle.depth_i = profile.depth_plane.decode(words[6]);
-  triangle.depth_j = profile.depth_plane.decode(words[7]);
+  // Known when compiled, the formats cost a third.
+  if (profile.color == kColorFormat && profile.depth_plane == kDepthPlaneFormat) {
+    decodePlanes(words, kColorFormat, kDepthPlaneFormat, triangle);
+  } else {
+    decodePlanes(words, profile.color, profile.depth_plane, triangle);
+  }
   return triangle;
 }
 

@@ -34,7 +34,7 @@ std::vector<PixelPacket> scannedPixels(const TilerSetup& setup, const NumberProf
 std::vector<PixelPacket> spanPixels(const TilerSetup& setup, const NumberProfile& numbers,
                                     TilingCounts& counts) {
   std::vector<PixelPacket> pixels;
-  counts += forEachPixel(setup, numbers, [&](const PixelPacket& pixel) { pixels.push_back(pixel); });
+  counts += tileTriangle(setup, numbers, pixels);
   return pixels;
 }
 
@@ -168,9 +168,10 @@ TEST(Tiling, undersampling_loses_no_pixel_of_the_unrounded_triangle) {
       for (std::int64_t pj = j_min >> 20; pj <= (j_max >> 20) + 1; ++pj)
         exact += inside(pi << 20, pj << 20) ? 1 : 0;
     }
-    tiled += forEachPixel(setup, configuration.numbers, [&](const PixelPacket& pixel) {
-               found += inside(std::int64_t{pixel.i} << 20, std::int64_t{pixel.j} << 20) ? 1 : 0;
-             }).tiled;
+    std::vector<PixelPacket> pixels;
+    tiled += tileTriangle(setup, configuration.numbers, pixels).tiled;
+    for (const PixelPacket& pixel : pixels)
+      found += inside(std::int64_t{pixel.i} << 20, std::int64_t{pixel.j} << 20) ? 1 : 0;
     interior += exact;
     lost += exact - found;
   }
