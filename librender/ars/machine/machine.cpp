@@ -1,15 +1,13 @@
 #include "librender/ars/machine/machine.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "librender/ars/machine/hardware_software_interface.h"
+#include "librender/ars/words/triangle_words.h"
 
 namespace deltaz::ars {
 
 namespace {
-
-constexpr int kTriangleWords = 8;  // report Fig 51
 
 int bufferCount(const MachineConfiguration& configuration) {
   return configuration.buffers == kOneBufferMoreThanTilers ? configuration.tilers + 1 : configuration.buffers;
@@ -17,7 +15,7 @@ int bufferCount(const MachineConfiguration& configuration) {
 
 TilerPipelineTiming timingOf(const MachineConfiguration& configuration) {
   TilerPipelineTiming timing;
-  timing.transfer = Picoseconds{kTriangleWords} * configuration.word_transfer * kNanosecond;
+  timing.transfer = Picoseconds{kTriangleWordCount} * configuration.word_transfer * kNanosecond;
   timing.transfer_fifo = configuration.transfer_fifo;
   timing.set_up_fifo = configuration.set_up_fifo;
   timing.output_fifo = configuration.output_fifo;
@@ -160,8 +158,9 @@ Result<Machine> Machine::make(const MachineConfiguration& configuration) {
 }
 
 void Machine::reset() {
-  modules_.assign(static_cast<std::size_t>(map_.memories()),
-                  MemoryModule(map_.wordsPerMemory(), configuration_.ties));
+  modules_.assign(
+      static_cast<std::size_t>(map_.memories()),
+      MemoryModule(map_.wordsPerMemory(), configuration_.ties, configuration_.depth_mantissa_bits));
 }
 
 void Machine::clearCounts() {

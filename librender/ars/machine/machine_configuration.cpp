@@ -27,6 +27,7 @@ Status validate(const MachineConfiguration& configuration) {
   DELTAZ_TRY(powerOfTwo("tilers", configuration.tilers, kMaximumTilers));
   DELTAZ_TRY(powerOfTwo("memories", configuration.memories, kMaximumMemories));
   DELTAZ_TRY(inRange("pixels in a queue", configuration.queue_depth, 0, kMaximumQueueDepth));
+  DELTAZ_TRY(inRange("bits of depth mantissa", configuration.depth_mantissa_bits, 1, 31));
   DELTAZ_TRY(inRange("pixels in a memory's FIFO", configuration.memory_fifo, 1, kMaximumFifoDepth));
   DELTAZ_TRY(inRange("pixels in a tiler's output FIFO", configuration.output_fifo, 1, kMaximumFifoDepth));
   DELTAZ_TRY(inRange("triangles in a transfer FIFO", configuration.transfer_fifo, 1, kMaximumFifoDepth));

@@ -26,10 +26,11 @@ struct MachineConfiguration {
 
   MemoryDesign memory_design = MemoryDesign::kVariable;
   TieRule ties = TieRule::kFirstStays;
-  int memory_fifo = kMemoryFifoDepth;  // FIFOs: 1..kMaximumFifoDepth
+  int depth_mantissa_bits = kDepthMantissaBits;  // of the pixels' depths, 1..31: the rest is exponent
+  int memory_fifo = kMemoryFifoDepth;            // FIFOs: 1..kMaximumFifoDepth
 
   int tiler_clock_percent = 100;  // 1..1000: of 8 MHz set-up and of 100 ns a sample
-  int transfer_fifo = kTransferFifoDepth, set_up_fifo = kSetUpFifoDepth, output_fifo = kOutputFifoDepth;
+  int transfer_fifo = kTriangleQueue, set_up_fifo = kSetUpQueue, output_fifo = kPixelQueue;
 
   int buffers = kOneBufferMoreThanTilers;  // 1..10000, or this
   int buffer_triangles = 32;               // 1..1000000

@@ -13,17 +13,16 @@
 
 #include "librender/ars/distribution/distribution_tree.h"
 #include "librender/ars/machine/pixel_source.h"
+#include "librender/ars/tiler/tiler_timing.h"
 
 namespace deltaz::ars {
 
-inline constexpr int kTransferFifoDepth = 2, kSetUpFifoDepth = 5, kOutputFifoDepth = 64;  // report 4.2.4
-
 struct TilerPipelineTiming {
   Picoseconds transfer = 0;  // of a triangle's eight words from the host
-  Picoseconds load = 700 * kNanosecond;
-  Picoseconds sample = 100 * kNanosecond;
-  int transfer_fifo = kTransferFifoDepth, set_up_fifo = kSetUpFifoDepth;  // triangles
-  int output_fifo = kOutputFifoDepth;                                     // pixels
+  Picoseconds load = kTilingLoad;
+  Picoseconds sample = kSamplePixel;
+  int transfer_fifo = kTriangleQueue, set_up_fifo = kSetUpQueue;  // triangles
+  int output_fifo = kPixelQueue;                                  // pixels
   int clock_percent = 100;  // of set-up and tiling machine: their times are divided by it
 };
 

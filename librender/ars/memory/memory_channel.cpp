@@ -13,7 +13,7 @@ MemoryChannel::MemoryChannel(MemoryModule& module, const CycleLengths& lengths, 
   for (std::size_t k = 0; k < kMemoryCycleCount; ++k) length_[k] = lengths.nanoseconds[k] * kNanosecond;
 }
 
-void MemoryChannel::accept(std::uint32_t address, std::uint32_t word, bool background, Picoseconds now) {
+void MemoryChannel::accept(std::uint32_t address, std::uint64_t word, bool background, Picoseconds now) {
   assert(hasRoom(now));
   const std::size_t depth = begins_.size();
   while (waiting_ > 0 && begins_[oldest_] <= now) {

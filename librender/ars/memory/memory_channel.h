@@ -34,7 +34,7 @@ class MemoryChannel {
     return accepted_ < static_cast<std::int64_t>(begins_.size()) || begins_[slot_] <= now;
   }
   // A pixel comes at `now`, no earlier than the one before; the FIFO has room.
-  void accept(std::uint32_t address, std::uint32_t word, bool background, Picoseconds now);
+  void accept(std::uint32_t address, std::uint64_t word, bool background, Picoseconds now);
 
   std::int64_t accepted() const { return accepted_; }
   // When the last cycle so far ends; 0 if there was none.

@@ -33,9 +33,10 @@ enum class TieRule : std::uint8_t { kFirstStays, kBrighter };
 std::string_view tieRuleName(TieRule rule);  // "first", "brighter"
 std::optional<TieRule> tieRuleNamed(std::string_view name);
 
-// Depth above colour: two words compare as their depths, and as their colours where these are equal.
-constexpr std::uint32_t memoryWord(std::uint32_t depth, std::uint8_t color) {
-  return depth << kColorBits | color;
+// Depth above colour: two words compare as their depths, and as their colours where these are equal. There is
+// room for depths of 32 bits, for studies of wider formats.
+constexpr std::uint64_t memoryWord(std::uint32_t depth, std::uint8_t color) {
+  return std::uint64_t{depth} << kColorBits | color;
 }
 
 struct MemoryCounts {
@@ -49,11 +50,16 @@ struct MemoryCounts {
 
 class MemoryModule {
  public:
-  explicit MemoryModule(int words, TieRule ties = TieRule::kFirstStays)
-      : ties_(ties), word_(static_cast<std::size_t>(words)), initialized_(static_cast<std::size_t>(words)) {}
+  // `depth_mantissa_bits`: the exponent that is compared first stands above them.
+  explicit MemoryModule(int words, TieRule ties = TieRule::kFirstStays,
+                        int depth_mantissa_bits = kDepthMantissaBits)
+      : ties_(ties),
+        exponent_shift_(kColorBits + depth_mantissa_bits),
+        word_(static_cast<std::size_t>(words)),
+        initialized_(static_cast<std::size_t>(words)) {}
 
   // A pixel arrives: `word` as memoryWord makes it. The cycle that it takes.
-  MemoryCycle write(std::uint32_t address, std::uint32_t word, bool background) {
+  MemoryCycle write(std::uint32_t address, std::uint64_t word, bool background) {
     const MemoryCycle cycle = decide(address, word, background);
     ++counts_.cycles[static_cast<std::size_t>(cycle)];
     return cycle;
@@ -68,7 +74,9 @@ class MemoryModule {
 
   // Looking changes nothing and takes no cycle.
   std::uint8_t color(std::uint32_t address) const { return static_cast<std::uint8_t>(word_[address]); }
-  std::uint32_t depth(std::uint32_t address) const { return word_[address] >> kColorBits; }
+  std::uint32_t depth(std::uint32_t address) const {
+    return static_cast<std::uint32_t>(word_[address] >> kColorBits);
+  }
   bool initialized(std::uint32_t address) const { return initialized_[address] != 0; }
   std::size_t words() const { return word_.size(); }
 
@@ -76,8 +84,8 @@ class MemoryModule {
   void clearCounts() { counts_ = {}; }
 
  private:
-  MemoryCycle decide(std::uint32_t address, std::uint32_t word, bool background) {
-    std::uint32_t& held = word_[address];
+  MemoryCycle decide(std::uint32_t address, std::uint64_t word, bool background) {
+    std::uint64_t& held = word_[address];
     if (background) {
       held = word;
       return MemoryCycle::kBackground;
@@ -87,14 +95,13 @@ class MemoryModule {
       held = word;
       return MemoryCycle::kInitialize;
     }
-    constexpr int kExponentShift = kColorBits + kDepthMantissaBits;
-    const std::uint32_t exponent = word >> kExponentShift, held_exponent = held >> kExponentShift;
+    const std::uint64_t exponent = word >> exponent_shift_, held_exponent = held >> exponent_shift_;
     if (exponent != held_exponent) {
       if (exponent < held_exponent) return MemoryCycle::kLookAheadNoWrite;
       held = word;
       return MemoryCycle::kLookAheadWrite;
     }
-    const std::uint32_t depth = word >> kColorBits, held_depth = held >> kColorBits;
+    const std::uint64_t depth = word >> kColorBits, held_depth = held >> kColorBits;
     if (depth == held_depth) {
       ++counts_.ties;
       if (word != held) ++counts_.split_ties;
@@ -107,8 +114,9 @@ class MemoryModule {
   }
 
   TieRule ties_;
+  int exponent_shift_;
   MemoryCounts counts_;
-  std::vector<std::uint32_t> word_;
+  std::vector<std::uint64_t> word_;
   std::vector<std::uint8_t> initialized_;
 };
 
