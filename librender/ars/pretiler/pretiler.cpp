@@ -40,7 +40,7 @@ bool isFinite(const ViewVertex& vertex) {
          std::all_of(vertex.color.begin(), vertex.color.end(), [](double c) { return std::isfinite(c); });
 }
 
-struct ProjectedVertex {
+struct OnScreen {
   ScreenPosition at;
   double inverse_u = 0;
   std::array<double, kColors> color{};
@@ -52,7 +52,7 @@ double area(const ScreenPosition& a, const ScreenPosition& b, const ScreenPositi
 }
 
 // Pre: the three positions are not in line.
-ScreenPlane planeOf(const std::array<const ProjectedVertex*, 3>& vertex, const std::array<double, 3>& value) {
+ScreenPlane planeOf(const std::array<const OnScreen*, 3>& vertex, const std::array<double, 3>& value) {
   const ScreenPosition& a = vertex[0]->at;
   const double bi = vertex[1]->at.i - a.i, bj = vertex[1]->at.j - a.j;
   const double ci = vertex[2]->at.i - a.i, cj = vertex[2]->at.j - a.j;
@@ -61,7 +61,7 @@ ScreenPlane planeOf(const std::array<const ProjectedVertex*, 3>& vertex, const s
   return {value[0], (db * cj - dc * bj) / determinant, (dc * bi - db * ci) / determinant};
 }
 
-using Part = std::array<const ProjectedVertex*, 3>;
+using Part = std::array<const OnScreen*, 3>;
 
 double areaOf(const Part& part) {
   return std::abs(area(part[0]->at, part[1]->at, part[2]->at));
@@ -76,8 +76,12 @@ ScreenPlanes planesOf(const Part& part, const ScreenPlane& inverse_u) {
   ScreenPlanes planes;
   planes.anchor = part[0]->at;
   planes.inverse_u = {part[0]->inverse_u, inverse_u.per_i, inverse_u.per_j};
-  for (std::size_t c = 0; c < kColors; ++c)
+  for (std::size_t c = 0; c < kColors; ++c) {
     planes.color[c] = planeOf(part, {part[0]->color[c], part[1]->color[c], part[2]->color[c]});
+    planes.color_over_u[c] =
+        planeOf(part, {part[0]->color[c] * part[0]->inverse_u, part[1]->color[c] * part[1]->inverse_u,
+                       part[2]->color[c] * part[2]->inverse_u});
+  }
   const std::array<double, 3> depths = inverseDepths(part);
   planes.least_inverse_u = *std::min_element(depths.begin(), depths.end());
   planes.greatest_inverse_u = *std::max_element(depths.begin(), depths.end());
@@ -160,7 +164,7 @@ void Pretiler::process(const ViewTriangle& triangle, std::vector<ScreenTriangle>
     }
   }
 
-  Polygon<ProjectedVertex> projected;
+  Polygon<OnScreen> projected;
   projected.corners = in_view.corners;
   for (std::size_t k = 0; k < in_view.corners; ++k) {
     const ViewVertex& p = in_view.corner[k];
@@ -170,7 +174,7 @@ void Pretiler::process(const ViewTriangle& triangle, std::vector<ScreenTriangle>
   const auto all_beside = [&](auto outside) {
     return std::all_of(projected.corner.begin(),
                        projected.corner.begin() + static_cast<std::ptrdiff_t>(projected.corners),
-                       [&](const ProjectedVertex& v) { return outside(v.at); });
+                       [&](const OnScreen& v) { return outside(v.at); });
   };
   if (all_beside([&](const ScreenPosition& p) { return p.j > right; }) ||
       all_beside([](const ScreenPosition& p) { return p.i < 0; }) ||

@@ -6,6 +6,8 @@
 
 #include <array>
 
+#include "librender/ars/words/projected_triangle.h"
+
 namespace deltaz::ars {
 
 // Colours are red, green and blue, 0 to 255, as the frame memory shows them.
@@ -26,17 +28,12 @@ struct ScreenPosition {
   double i = 0, j = 0;
 };
 
-// A value that is linear on the screen.
-struct ScreenPlane {
-  double value = 0, per_i = 0, per_j = 0;  // at the planes' anchor, and its gradient
-  double at(double di, double dj) const { return value + (per_i * di + per_j * dj); }
-};
-
 // What the pieces share that the screen's border cut a triangle into.
 struct ScreenPlanes {
   ScreenPosition anchor;  // one of the triangle's own vertices, in front of the hither plane
   ScreenPlane inverse_u;
-  std::array<ScreenPlane, kColors> color;              // linear on the screen, as the machine's is
+  std::array<ScreenPlane, kColors> color;         // linear on the screen, as the machine's is
+  std::array<ScreenPlane, kColors> color_over_u;  // of colour linear in space, times 1/U
   double least_inverse_u = 0, greatest_inverse_u = 0;  // over what lies in front of the hither plane
 };
 

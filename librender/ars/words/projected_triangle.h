@@ -17,4 +17,10 @@ struct ProjectedVertex {
 
 using ProjectedTriangle = std::array<ProjectedVertex, 3>;
 
+// A value that is linear on the screen: at an anchor, and its gradient.
+struct ScreenPlane {
+  double value = 0, per_i = 0, per_j = 0;
+  double at(double di, double dj) const { return value + (per_i * di + per_j * dj); }
+};
+
 }  // namespace deltaz::ars
