@@ -57,7 +57,7 @@ void TriangleSource::sample(std::size_t triangle, SampledTriangle& result) const
 
 void TriangleSource::pixels(std::size_t triangle, std::vector<PixelPacket>& result) const {
   const TilerSetup setup = setUpTriangle(triangles_[triangle], configuration_, supplement(triangle));
-  forEachPixel(setup, configuration_.numbers, [&](const PixelPacket& pixel) { result.push_back(pixel); });
+  tileTriangle(setup, configuration_.numbers, result);
 }
 
 Result<TriangleSource> triangleSource(const TriangleStream& stream, std::uint32_t sub_image, int pass,
