@@ -11,6 +11,7 @@ install(TARGETS dbbuild dbview dbcheck RUNTIME DESTINATION ${CMAKE_INSTALL_BINDI
 install(TARGETS deltaz_formats deltaz_db deltaz_ars deltaz_render EXPORT deltazTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY formats libdb librender DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/deltaz FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY formats/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats FILES_MATCHING PATTERN "*.md")
+install(FILES librender/ars/words/triangle_stream.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats)
 install(FILES tools/dbcheck/report.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/deltaz)
 
 install(EXPORT deltazTargets NAMESPACE deltaz:: DESTINATION ${package_dir})

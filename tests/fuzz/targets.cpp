@@ -10,6 +10,7 @@
 #include "formats/color_file.h"
 #include "formats/container.h"
 #include "formats/delta_codec.h"
+#include "formats/hash.h"
 #include "formats/model_file.h"
 #include "formats/node_file.h"
 #include "formats/placement_file.h"
@@ -17,6 +18,10 @@
 #include "libdb/access/database.h"
 #include "libdb/check/check.h"
 #include "libdb/export/export_terrain.h"
+#include "librender/ars/experiments/random_triangles.h"
+#include "librender/ars/tiler/span_tiler.h"
+#include "librender/ars/tiler/triangle_encoder.h"
+#include "librender/ars/words/triangle_stream.h"
 #include "tests/support/asset_editor.h"
 #include "tests/support/container_surgery.h"
 #include "tests/support/database_editor.h"
@@ -441,6 +446,71 @@ std::vector<FuzzInput> databaseSeeds() {
   return {{}, edits, FuzzInput(edits.begin(), edits.begin() + 4)};
 }
 
+// ---- triangle_stream: an odd first byte asks for right checksums
+
+constexpr std::size_t kStreamHeaderBytes = 64, kStreamChecksumBytes = 8;
+
+void putHash(FuzzInput& bytes, std::size_t at, std::uint64_t hash) {
+  for (std::size_t k = 0; k < kStreamChecksumBytes; ++k)
+    bytes[at + k] = static_cast<std::byte>(hash >> (8 * k) & 0xFF);
+}
+
+void fuzzTriangleStream(std::span<const std::byte> input) {
+  if (input.empty()) return;
+  FuzzInput bytes(input.begin() + 1, input.end());
+  if ((std::to_integer<unsigned>(input[0]) & 1) != 0 &&
+      bytes.size() >= kStreamHeaderBytes + kStreamChecksumBytes) {
+    const std::span<const std::byte> all = bytes;
+    putHash(bytes, kStreamHeaderBytes - kStreamChecksumBytes,
+            hash64(all.first(kStreamHeaderBytes - kStreamChecksumBytes)));
+    const std::size_t end = bytes.size() - kStreamChecksumBytes;
+    putHash(bytes, end, hash64(all.subspan(kStreamHeaderBytes, end - kStreamHeaderBytes)));
+  }
+  const auto stream = ars::decodeTriangleStream(bytes, "stream");
+  if (!stream.ok()) return;
+  const auto again = ars::encodeTriangleStream(stream.value());
+  promise(again.ok() && again.value() == bytes, "what was read is written back");
+  const ars::TilerConfiguration configuration{.numbers = stream.value().profile, .corrections = {}};
+  for (const ars::TriangleBatch& batch : stream.value().batches) {
+    std::vector<ars::PixelPacket> pixels;
+    const ars::TilingCounts counts = ars::tileTriangles(batch.triangles, configuration, pixels);
+    promise(counts.tiled == static_cast<std::int64_t>(pixels.size()) && counts.sampled >= counts.tiled,
+            "what is tiled was sampled");
+    for (const ars::PixelPacket& pixel : pixels)
+      promise(pixel.i < ars::kScreenLines && pixel.j < ars::kScreenPixels, "tiled pixels lie in the picture");
+    for (const ars::ProjectedTriangle& source : batch.sources) {
+      const ars::EncodedTriangle encoded = ars::encodeTriangle(source, configuration.numbers, {});
+      promise(ars::isTileable(encoded.variables, configuration.numbers.vertex_fraction_bits),
+              "any projected triangle can be encoded");
+    }
+  }
+}
+
+std::vector<FuzzInput> triangleStreamSeeds() {
+  std::vector<FuzzInput> seeds;
+  for (const bool sources : {false, true}) {
+    ars::TriangleStream stream;
+    stream.has_sources = sources;
+    ars::RandomNumbers random(1);
+    for (const ars::DrawPhase phase : {ars::DrawPhase::kBackground, ars::DrawPhase::kForeground}) {
+      ars::TriangleBatch batch;
+      batch.phase = phase;
+      for (int n = 0; n < 3; ++n) {
+        const ars::ProjectedTriangle triangle = ars::randomTriangle(random, {.side = 20});
+        const ars::EncodedTriangle encoded =
+            ars::encodeTriangle(triangle, stream.profile, {.oversample = n == 0, .background = n == 1});
+        batch.triangles.push_back(ars::encodeTriangleWords(encoded.variables, stream.profile));
+        if (sources) batch.sources.push_back(triangle);
+      }
+      stream.batches.push_back(batch);
+    }
+    const std::vector<std::byte> bytes = ars::encodeTriangleStream(stream).value();
+    for (const std::uint8_t first : {std::uint8_t{0}, std::uint8_t{1}})
+      seeds.push_back(inputOf(first, bytes));
+  }
+  return seeds;
+}
+
 }  // namespace
 
 std::span<const FuzzTarget> fuzzTargets() {
@@ -455,6 +525,7 @@ std::span<const FuzzTarget> fuzzTargets() {
       FuzzTarget{"placement_file", fuzzPlacementFile, placementFileSeeds},
       FuzzTarget{"database", fuzzDatabase, databaseSeeds},
       FuzzTarget{"furnished", fuzzFurnished, databaseSeeds, 15},
+      FuzzTarget{"triangle_stream", fuzzTriangleStream, triangleStreamSeeds},
   };
   return kTargets;
 }
