@@ -3,6 +3,7 @@
 #include <numeric>
 #include <vector>
 
+#include "librender/ars/experiments/correction_effects.h"
 #include "librender/ars/experiments/random_triangles.h"
 #include "librender/ars/experiments/tiler_tables.h"
 #include "librender/ars/tiler/span_tiler.h"
@@ -79,19 +80,7 @@ TEST(TilerAcceptance, top_left_rule_tiles_pixels_of_shared_edges_once) {
     }
   }
   // A mesh whose inner vertices lie anywhere, but so that no triangle turns over.
-  std::vector<ProjectedTriangle> mesh = latticeTriangles(30, 10);
-  RandomNumbers random(11);
-  std::vector<std::array<double, 2>> moved(31 * 31);
-  for (std::array<double, 2>& by : moved) by = {random.uniform(-2.4, 2.4), random.uniform(-2.4, 2.4)};
-  for (ProjectedTriangle& triangle : mesh) {
-    for (ProjectedVertex& vertex : triangle) {
-      const auto row = static_cast<std::size_t>(vertex.i / 10),
-                 column = static_cast<std::size_t>(vertex.j / 10);
-      if (row == 0 || row == 30 || column == 0 || column == 30) continue;
-      vertex.i += moved[row * 31 + column][0];
-      vertex.j += moved[row * 31 + column][1];
-    }
-  }
+  const std::vector<ProjectedTriangle> mesh = randomMesh(30, 10);
   const std::vector<int> once = coverage(mesh, configuration, false), twice = coverage(mesh, {}, false);
   for (int i = 0; i < kScreenLines; ++i) {
     for (int j = 0; j < kScreenPixels; ++j) {
