@@ -41,7 +41,7 @@ std::optional<QueueDiscipline> queueDisciplineNamed(std::string_view name);
 // A pixel packet on its way: what the memory will write, and where.
 struct TreePixel {
   std::uint64_t word = 0;      // memoryWord of depth and colour
-  std::uint32_t address = 0;   // in its memory
+  std::uint32_t address = 0;   // 18 bits, i above j
   std::uint32_t sequence = 0;  // counts up within a tiler, from 1
   std::uint8_t memory = 0, tiler = 0;
   bool background = false;

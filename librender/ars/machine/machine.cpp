@@ -158,24 +158,22 @@ Result<Machine> Machine::make(const MachineConfiguration& configuration) {
 }
 
 void Machine::reset() {
-  modules_.assign(
-      static_cast<std::size_t>(map_.memories()),
-      MemoryModule(map_.wordsPerMemory(), configuration_.ties, configuration_.depth_mantissa_bits));
+  words_.assign(std::size_t{kScreenLines} * kScreenPixels, 0);
 }
 
-void Machine::clearCounts() {
-  for (MemoryModule& module : modules_) module.clearCounts();
+MemoryModule Machine::module() {
+  return MemoryModule(words_, configuration_.ties, configuration_.depth_mantissa_bits);
 }
 
 Result<PassStatistics> Machine::runTimed(const PixelSource& source) {
-  clearCounts();
   const CycleLengths lengths = cycleLengths(configuration_.memory_design);
   const TilerPipelineTiming timing = timingOf(configuration_);
   std::vector<TilerPipeline> tilers;
   for (int tiler = 0; tiler < configuration_.tilers; ++tiler)
     tilers.emplace_back(tiler, source, map_, timing);
+  std::vector<MemoryModule> modules(static_cast<std::size_t>(map_.memories()), module());
   std::vector<MemoryChannel> channels;
-  for (MemoryModule& module : modules_) channels.emplace_back(module, lengths, configuration_.memory_fifo);
+  for (MemoryModule& module : modules) channels.emplace_back(module, lengths, configuration_.memory_fifo);
   TilerBank inlets(tilers);
   MemoryBank outlets(channels);
   DistributionTree tree(configuration_.tilers, configuration_.memories, inlets, outlets,
@@ -214,51 +212,43 @@ Result<PassStatistics> Machine::runTimed(const PixelSource& source) {
   statistics.barriers = static_cast<int>(ends.size()) - 1;
   for (const TilerPipeline& tiler : tilers) statistics.tilers.push_back(tiler.statistics(now));
   statistics.tree = tree.statistics(std::max(cycle, treeCycleAt(now)));
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    statistics.memories.push_back({.counts = modules_[m].counts(), .channel = channels[m].statistics(now)});
+  for (std::size_t m = 0; m < modules.size(); ++m)
+    statistics.memories.push_back({.counts = modules[m].counts(), .channel = channels[m].statistics(now)});
   DELTAZ_TRY(verifyConservation(statistics, lengths));
   return statistics;
 }
 
 MemoryCounts Machine::runFunctional(const PixelSource& source) {
-  clearCounts();
+  MemoryModule memory = module();
   std::vector<PixelPacket> pixels;
   for (std::size_t triangle = 0; triangle < source.triangles(); ++triangle) {
     pixels.clear();
     source.pixels(triangle, pixels);
     for (const PixelPacket& pixel : pixels)
-      modules_[static_cast<std::size_t>(map_.memory(pixel.i, pixel.j))].write(
-          static_cast<std::uint32_t>(map_.address(pixel.i, pixel.j)), memoryWord(pixel.depth, pixel.color),
-          pixel.background);
+      memory.write(static_cast<std::uint32_t>(placeOf(pixel.i, pixel.j)),
+                   memoryWord(pixel.depth, pixel.color), pixel.background);
   }
-  MemoryCounts sum;
-  for (const MemoryModule& module : modules_) sum += module.counts();
-  return sum;
+  return memory.counts();
 }
 
 std::vector<std::uint8_t> Machine::readPicture() {
+  MemoryModule memory = module();
   std::vector<std::uint8_t> picture;
-  picture.reserve(static_cast<std::size_t>(kScreenLines) * kScreenPixels);
-  for (int i = 0; i < kScreenLines; ++i)
-    for (int j = 0; j < kScreenPixels; ++j)
-      picture.push_back(modules_[static_cast<std::size_t>(map_.memory(i, j))].read(
-          static_cast<std::uint32_t>(map_.address(i, j))));
+  picture.reserve(words_.size());
+  for (std::uint32_t place = 0; place < words_.size(); ++place) picture.push_back(memory.read(place));
   return picture;
 }
 
 std::uint8_t Machine::color(int i, int j) const {
-  return modules_[static_cast<std::size_t>(map_.memory(i, j))].color(
-      static_cast<std::uint32_t>(map_.address(i, j)));
+  return static_cast<std::uint8_t>(words_[placeOf(i, j)]);
 }
 
 std::uint32_t Machine::depth(int i, int j) const {
-  return modules_[static_cast<std::size_t>(map_.memory(i, j))].depth(
-      static_cast<std::uint32_t>(map_.address(i, j)));
+  return static_cast<std::uint32_t>((words_[placeOf(i, j)] & ~kInitFlag) >> kColorBits);
 }
 
 bool Machine::written(int i, int j) const {
-  return modules_[static_cast<std::size_t>(map_.memory(i, j))].initialized(
-      static_cast<std::uint32_t>(map_.address(i, j)));
+  return (words_[placeOf(i, j)] & kInitFlag) != 0;
 }
 
 }  // namespace deltaz::ars

@@ -48,11 +48,14 @@ class Machine {
 
  private:
   explicit Machine(const MachineConfiguration& configuration);
-  void clearCounts();
+  MemoryModule module();  // of the whole picture
+  static constexpr std::size_t placeOf(int i, int j) {
+    return static_cast<std::size_t>(i) * kScreenPixels + static_cast<std::size_t>(j);
+  }
 
   MachineConfiguration configuration_;
   MemoryMap map_;
-  std::vector<MemoryModule> modules_;
+  std::vector<std::uint64_t> words_;  // of all memories, line by line
 };
 
 }  // namespace deltaz::ars

@@ -117,7 +117,7 @@ bool TilerPipeline::tile() {
 
     const PixelPacket& packet = pixel.packet;
     output_[slot] = {.word = memoryWord(packet.depth, packet.color),
-                     .address = static_cast<std::uint32_t>(map_.address(packet.i, packet.j)),
+                     .address = static_cast<std::uint32_t>(packet.i) * kScreenPixels + packet.j,
                      .sequence = static_cast<std::uint32_t>(++made_),
                      .memory = static_cast<std::uint8_t>(map_.memory(packet.i, packet.j)),
                      .tiler = static_cast<std::uint8_t>(number_),

@@ -15,11 +15,10 @@
 // Cost: a few nanoseconds a pixel. Thread-safety: one thread a module.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
-#include <vector>
 
 #include "librender/ars/memory/memory_cycles.h"
 #include "librender/ars/words/pixel_packet.h"
@@ -34,7 +33,7 @@ std::string_view tieRuleName(TieRule rule);  // "first", "brighter"
 std::optional<TieRule> tieRuleNamed(std::string_view name);
 
 // Depth above colour: two words compare as their depths, and as their colours where these are equal. There is
-// room for depths of 32 bits, for studies of wider formats.
+// room for depths of 32 bits, for studies of wider formats, and for the INIT flag above them.
 constexpr std::uint64_t memoryWord(std::uint32_t depth, std::uint8_t color) {
   return std::uint64_t{depth} << kColorBits | color;
 }
@@ -48,15 +47,16 @@ struct MemoryCounts {
   MemoryCounts& operator+=(const MemoryCounts& other);
 };
 
+inline constexpr std::uint64_t kInitFlag = std::uint64_t{1} << 63;
+
 class MemoryModule {
  public:
-  // `depth_mantissa_bits`: the exponent that is compared first stands above them.
-  explicit MemoryModule(int words, TieRule ties = TieRule::kFirstStays,
+  // `store` outlives the module. Modules may share one if no two use the same words of it: a picture kept in
+  // one piece is read and written faster than in interleaved parts. `depth_mantissa_bits`: the exponent that
+  // is compared first stands above them.
+  explicit MemoryModule(std::span<std::uint64_t> store, TieRule ties = TieRule::kFirstStays,
                         int depth_mantissa_bits = kDepthMantissaBits)
-      : ties_(ties),
-        exponent_shift_(kColorBits + depth_mantissa_bits),
-        word_(static_cast<std::size_t>(words)),
-        initialized_(static_cast<std::size_t>(words)) {}
+      : store_(store), ties_(ties), exponent_shift_(kColorBits + depth_mantissa_bits) {}
 
   // A pixel arrives: `word` as memoryWord makes it. The cycle that it takes.
   MemoryCycle write(std::uint32_t address, std::uint64_t word, bool background) {
@@ -67,38 +67,37 @@ class MemoryModule {
 
   // What the antialiaser gets.
   std::uint8_t read(std::uint32_t address) {
-    initialized_[address] = 0;
+    store_[address] &= ~kInitFlag;
     ++counts_.cycles[static_cast<std::size_t>(MemoryCycle::kRead)];
     return color(address);
   }
 
   // Looking changes nothing and takes no cycle.
-  std::uint8_t color(std::uint32_t address) const { return static_cast<std::uint8_t>(word_[address]); }
+  std::uint8_t color(std::uint32_t address) const { return static_cast<std::uint8_t>(store_[address]); }
   std::uint32_t depth(std::uint32_t address) const {
-    return static_cast<std::uint32_t>(word_[address] >> kColorBits);
+    return static_cast<std::uint32_t>((store_[address] & ~kInitFlag) >> kColorBits);
   }
-  bool initialized(std::uint32_t address) const { return initialized_[address] != 0; }
-  std::size_t words() const { return word_.size(); }
+  bool initialized(std::uint32_t address) const { return (store_[address] & kInitFlag) != 0; }
 
   const MemoryCounts& counts() const { return counts_; }
   void clearCounts() { counts_ = {}; }
 
  private:
   MemoryCycle decide(std::uint32_t address, std::uint64_t word, bool background) {
-    std::uint64_t& held = word_[address];
+    std::uint64_t& held_and_flag = store_[address];
     if (background) {
-      held = word;
+      held_and_flag = word | (held_and_flag & kInitFlag);
       return MemoryCycle::kBackground;
     }
-    if (initialized_[address] == 0) {
-      initialized_[address] = 1;
-      held = word;
+    if ((held_and_flag & kInitFlag) == 0) {
+      held_and_flag = word | kInitFlag;
       return MemoryCycle::kInitialize;
     }
+    const std::uint64_t held = held_and_flag & ~kInitFlag;
     const std::uint64_t exponent = word >> exponent_shift_, held_exponent = held >> exponent_shift_;
     if (exponent != held_exponent) {
       if (exponent < held_exponent) return MemoryCycle::kLookAheadNoWrite;
-      held = word;
+      held_and_flag = word | kInitFlag;
       return MemoryCycle::kLookAheadWrite;
     }
     const std::uint64_t depth = word >> kColorBits, held_depth = held >> kColorBits;
@@ -109,15 +108,14 @@ class MemoryModule {
     } else if (depth < held_depth) {
       return MemoryCycle::kReadCompareNoWrite;
     }
-    held = word;
+    held_and_flag = word | kInitFlag;
     return MemoryCycle::kReadCompareWrite;
   }
 
+  std::span<std::uint64_t> store_;
   TieRule ties_;
   int exponent_shift_;
   MemoryCounts counts_;
-  std::vector<std::uint64_t> word_;
-  std::vector<std::uint8_t> initialized_;
 };
 
 }  // namespace deltaz::ars

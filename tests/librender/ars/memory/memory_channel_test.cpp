@@ -1,6 +1,7 @@
 #include "librender/ars/memory/memory_channel.h"
 
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace deltaz::ars {
 namespace {
@@ -8,7 +9,8 @@ namespace {
 constexpr CycleLengths kLengths = {{115, 165, 150, 190, 170, 210, 240}};
 
 TEST(MemoryChannel, serves_a_pixel_when_it_comes_and_the_next_when_that_is_done) {
-  MemoryModule module(4);
+  std::vector<std::uint64_t> words(4);
+  MemoryModule module(words);
   MemoryChannel channel(module, kLengths);
   channel.accept(0, memoryWord(1, 1), false, 1000 * kNanosecond);
   EXPECT_EQ(channel.idleAt(), 1165 * kNanosecond);
@@ -24,7 +26,8 @@ TEST(MemoryChannel, serves_a_pixel_when_it_comes_and_the_next_when_that_is_done)
 }
 
 TEST(MemoryChannel, has_room_again_when_a_waiting_pixels_cycle_begins) {
-  MemoryModule module(8);
+  std::vector<std::uint64_t> words(8);
+  MemoryModule module(words);
   MemoryChannel channel(module, kLengths, 2);
   channel.accept(0, memoryWord(1, 1), false, 0);  // in its cycle at once: it waits in no FIFO
   channel.accept(1, memoryWord(1, 1), false, 0);
