@@ -220,11 +220,9 @@ Result<PassStatistics> Machine::runTimed(const PixelSource& source) {
 
 MemoryCounts Machine::runFunctional(const PixelSource& source) {
   MemoryModule memory = module();
-  std::vector<PixelPacket> pixels;
+  std::vector<PixelPacket> room;
   for (std::size_t triangle = 0; triangle < source.triangles(); ++triangle) {
-    pixels.clear();
-    source.pixels(triangle, pixels);
-    for (const PixelPacket& pixel : pixels)
+    for (const PixelPacket& pixel : source.pixels(triangle, room))
       memory.write(static_cast<std::uint32_t>(placeOf(pixel.i, pixel.j)),
                    memoryWord(pixel.depth, pixel.color), pixel.background);
   }

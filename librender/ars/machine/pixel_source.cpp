@@ -2,8 +2,11 @@
 
 namespace deltaz::ars {
 
-void RecordedPixels::pixels(std::size_t triangle, std::vector<PixelPacket>& result) const {
-  for (const SampledPixel& pixel : list[triangle].sampled.pixels) result.push_back(pixel.packet);
+std::span<const PixelPacket> RecordedPixels::pixels(std::size_t triangle,
+                                                    std::vector<PixelPacket>& room) const {
+  room.clear();
+  for (const SampledPixel& pixel : list[triangle].sampled.pixels) room.push_back(pixel.packet);
+  return room;
 }
 
 }  // namespace deltaz::ars

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "librender/ars/simulated_time.h"
@@ -41,8 +42,9 @@ class PixelSource {
   virtual Picoseconds setUpTime(std::size_t triangle) const = 0;
   // For a timed run. `result` is cleared first.
   virtual void sample(std::size_t triangle, SampledTriangle& result) const = 0;
-  // The same pixels, in any order, behind those in `result`.
-  virtual void pixels(std::size_t triangle, std::vector<PixelPacket>& result) const = 0;
+  // The same pixels, in any order. They may stand in `room`, which is the caller's to give again and grows as
+  // is needed; valid until then.
+  virtual std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const = 0;
 
  protected:
   PixelSource(const PixelSource&) = default;
@@ -65,7 +67,7 @@ class RecordedPixels final : public PixelSource {
   void sample(std::size_t triangle, SampledTriangle& result) const override {
     result = list[triangle].sampled;
   }
-  void pixels(std::size_t triangle, std::vector<PixelPacket>& result) const override;
+  std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const override;
 };
 
 }  // namespace deltaz::ars

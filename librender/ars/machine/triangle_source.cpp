@@ -55,9 +55,16 @@ void TriangleSource::sample(std::size_t triangle, SampledTriangle& result) const
   }
 }
 
-void TriangleSource::pixels(std::size_t triangle, std::vector<PixelPacket>& result) const {
+std::span<const PixelPacket> TriangleSource::pixels(std::size_t triangle,
+                                                    std::vector<PixelPacket>& room) const {
   const TilerSetup setup = setUpTriangle(triangles_[triangle], configuration_, supplement(triangle));
-  tileTriangle(setup, configuration_.numbers, result);
+  std::size_t count = 0;
+  placePixels(setup, configuration_.numbers, [&](std::size_t more) {
+    if (count + more > room.size()) room.resize(2 * (count + more));
+    count += more;
+    return room.data() + (count - more);
+  });
+  return std::span(room).first(count);
 }
 
 Result<TriangleSource> triangleSource(const TriangleStream& stream, std::uint32_t sub_image, int pass,
@@ -71,6 +78,10 @@ Result<TriangleSource> triangleSource(const TriangleStream& stream, std::uint32_
                       "it holds the tilers' words and no projected triangles",
                       "record it with them, or draw it as it was recorded");
   TriangleSource source(configuration);
+  std::size_t triangles = 0;
+  for (const TriangleBatch& batch : stream.batches)
+    if (batch.sub_image == sub_image && batch.pass == pass) triangles += batch.triangles.size();
+  source.reserve(triangles);
   for (const TriangleBatch& batch : stream.batches) {
     if (batch.sub_image != sub_image || batch.pass != pass) continue;
     source.drain();

@@ -24,6 +24,7 @@ class TriangleSource final : public PixelSource {
     triangles_.push_back(triangle);
     supplements_.push_back(supplement);
   }
+  void reserve(std::size_t triangles) { triangles_.reserve(triangles); }
   // What is added from here on waits until all before is in memory.
   void drain() {
     if (!triangles_.empty()) barriers_.push_back(triangles_.size());
@@ -33,7 +34,7 @@ class TriangleSource final : public PixelSource {
   std::vector<std::size_t> barriers() const override { return barriers_; }
   Picoseconds setUpTime(std::size_t triangle) const override;
   void sample(std::size_t triangle, SampledTriangle& result) const override;
-  void pixels(std::size_t triangle, std::vector<PixelPacket>& result) const override;
+  std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const override;
 
   const TilerConfiguration& configuration() const { return configuration_; }
 
