@@ -36,7 +36,7 @@ struct UnitTimes {
 
 struct TilerStatistics {
   std::int64_t triangles = 0, samples = 0, pixels = 0;
-  UnitTimes transfer, set_up, tiling;
+  UnitTimes transfer = {}, set_up = {}, tiling = {};
   Picoseconds loading = 0;    // of tiling.busy: the rest is sampling
   int output_high_water = 0;  // most pixels in the output FIFO
 };
