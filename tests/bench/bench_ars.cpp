@@ -85,8 +85,10 @@ bool run(const Options& options, bool oversample) {
     configuration.mode = mode;
     Machine machine = Machine::make(configuration).value();
     Result<PassStatistics> statistics = PassStatistics{};
-    const Times timed = timesOf(
-        options.rounds, [&] { statistics = machine.runTimed(triangleSource(stream, 0, 0, {}).value()); });
+    const Times timed = timesOf(options.rounds, [&] {
+      machine.reset();
+      statistics = machine.runTimed(triangleSource(stream, 0, 0, {}).value());
+    });
     if (!statistics.ok()) return fail(statistics.error());
     const PassStatistics& found = statistics.value();
     if (found.memoryCounts().writes() != counts.writes())

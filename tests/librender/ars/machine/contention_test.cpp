@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "librender/ars/machine/machine.h"
 #include "tests/librender/ars/machine/random_pixels.h"
@@ -17,7 +18,7 @@ constexpr std::array kPercents = {25, 50, 75, 100};
 const std::vector<RecordedPixels>& loads() {
   static const std::vector<RecordedPixels> kLoads = [] {
     std::vector<RecordedPixels> loads;
-    for (const unsigned seed : {1U, 2U, 3U}) loads.push_back(randomPixels({.side = 69.7, .seed = seed}));
+    for (const unsigned seed : {1U, 2U}) loads.push_back(randomPixels({.side = 69.7, .seed = seed}));
     return loads;
   }();
   return kLoads;
@@ -112,6 +113,42 @@ TEST(Contention, average_memory_cycle_is_168_5_nanoseconds) {
     EXPECT_NEAR(averageCycle(statistics.memoryCounts().cycles, cycleLengths(MemoryDesign::kVariable)), 168.5,
                 1.2);
   }
+}
+
+// Digest 7, the exception: large triangles of which nearly every sample is a pixel. Interleave saturates
+// then, scramble does not, and the machine comes near its forty million pixels a second.
+TEST(Contention, large_triangles_saturate_interleave_and_not_scramble) {
+  RecordedPixels load;
+  std::mt19937 random(40);
+  constexpr int kSide = 90;
+  for (std::uint32_t k = 0; k < 150; ++k) {
+    RecordedPixels::Triangle triangle;
+    triangle.set_up = 8630 * kNanosecond;
+    const auto top = random() % (kScreenLines - kSide), left = random() % (kScreenPixels - kSide);
+    const std::uint32_t depth = (20 + k % 3) << 19 | k;
+    for (unsigned i = 0; i < kSide; ++i) {
+      for (unsigned j = 0; j < kSide - i; ++j) {
+        PixelPacket packet;
+        packet.i = static_cast<std::uint16_t>(top + i);
+        packet.j = static_cast<std::uint16_t>(left + j);
+        packet.depth = depth;
+        triangle.sampled.pixels.push_back({.samples = 1, .packet = packet});
+      }
+    }
+    load.list.push_back(triangle);
+  }
+  const auto run_in = [&load](HashingMode mode) {
+    MachineConfiguration configuration;
+    configuration.mode = mode;
+    configuration.buffer_triangles = 2;
+    return Machine::make(configuration).value().runTimed(load).value();
+  };
+  const PassStatistics interleave = run_in(HashingMode::kInterleave),
+                       scramble = run_in(HashingMode::kScramble);
+  EXPECT_GT(interleave.tree.longestQueue(), 100);
+  EXPECT_LT(interleave.pixelsPerTreeCycle(), 3.6);
+  EXPECT_LE(scramble.tree.longestQueue(), 6);
+  EXPECT_GT(scramble.pixelsPerTreeCycle(), 3.8);
 }
 
 // Digest 7, Fig 92: 180 .. 94,762 accesses a memory become 32,009 .. 32,101.
