@@ -41,64 +41,73 @@ struct StepSpan {
   int first = 0, last = -1;
 };
 
-// What one edge allows on each line after the other: p + step * slope >= 0 holds from a step on, or up to
+// What the edges allow on each line after the other: p + step * slope >= 0 holds from a step on, or up to
 // one. The bound moves by a whole number of steps a line, and by one more whenever the remainder is full:
-// exact, without a division a line. slope is not 0.
+// exact, without a division a line. Edges are lanes of a vector; those left out allow everything.
 template <typename Integer>
-class EdgeBound {
+class EdgeBounds {
  public:
-  EdgeBound() = default;
-  EdgeBound(Integer p, Integer line, Integer slope, int pixels) : divisor_(slope < 0 ? -slope : slope) {
-    const Integer quotient = floorDivide(p, divisor_);
-    remainder_ = p - quotient * divisor_;
-    whole_ = floorDivide(line, divisor_);
-    part_ = line - whole_ * divisor_;
+  explicit EdgeBounds(int pixels) { free_end_.fill(pixels); }
+  // slope is not 0.
+  void set(std::size_t edge, Integer p, Integer line, Integer slope, int pixels) {
     const bool lower = slope > 0;
-    bound_ = lower ? -quotient : quotient;
-    sign_ = lower ? -1 : 1;
-    lower_mask_ = lower ? -1 : 0;
-    free_end_ = lower ? pixels : 0;
+    const Integer divisor = lower ? slope : -slope, sign = lower ? -1 : 1;
+    const Integer quotient = floorDivide(p, divisor), whole = floorDivide(line, divisor);
+    divisor_[edge] = divisor;
+    remainder_[edge] = p - quotient * divisor;
+    part_[edge] = line - whole * divisor;
+    bound_[edge] = sign * quotient;
+    whole_[edge] = sign * whole;
+    sign_[edge] = sign;
+    lower_[edge] = lower ? -1 : 0;
+    free_end_[edge] = lower ? pixels : 0;
   }
-  Integer first() const { return bound_ & lower_mask_; }
-  Integer last() const { return (bound_ & ~lower_mask_) + free_end_; }
+  Integer first(Integer least) const {
+    for (std::size_t k = 0; k < kEdges; ++k)
+      least = std::max(least, static_cast<Integer>(bound_[k] & lower_[k]));
+    return least;
+  }
+  Integer last(Integer greatest) const {
+    for (std::size_t k = 0; k < kEdges; ++k)
+      greatest = std::min(greatest, static_cast<Integer>((bound_[k] & ~lower_[k]) + free_end_[k]));
+    return greatest;
+  }
   void nextLine() {
-    remainder_ += part_;
-    const bool full = remainder_ >= divisor_;
-    remainder_ -= full ? divisor_ : 0;
-    bound_ += sign_ * (whole_ + (full ? 1 : 0));
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Integer remainder = remainder_[k] + part_[k];
+      const Integer full = remainder >= divisor_[k] ? -1 : 0;
+      remainder_[k] = remainder - (divisor_[k] & full);
+      bound_[k] += whole_[k] + (sign_[k] & full);
+    }
   }
 
  private:
+  static constexpr std::size_t kEdges = 3, kLanes = 4;
   static Integer floorDivide(Integer a, Integer b) { return a / b - (a % b < 0 ? 1 : 0); }
-  Integer bound_ = 0, remainder_ = 0, divisor_ = 1, whole_ = 0, part_ = 0, sign_ = 1, lower_mask_ = 0,
-          free_end_ = 0;
+  std::array<Integer, kLanes> bound_{}, remainder_{}, divisor_{1, 1, 1, 1}, part_{}, whole_{}, sign_{},
+      lower_{}, free_end_{};
 };
 
 // Calls visit(line, span) for each line that has valid pixels; lines and spans count from the corner.
 template <typename Integer, typename Visit>
 TilingCounts forEachSpanOf(const TilerSetup& setup, Visit&& visit) {
-  std::array<EdgeBound<Integer>, 3> edges;
+  EdgeBounds<Integer> edges(setup.pixels);
   int first_line = 0, last_line = setup.lines;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto p = static_cast<Integer>(setup.p_start[k]), line = static_cast<Integer>(setup.p_line[k]);
     if (setup.p_pixel[k] != 0) {
-      edges[k] = EdgeBound<Integer>(p, line, static_cast<Integer>(setup.p_pixel[k]), setup.pixels);
+      edges.set(k, p, line, static_cast<Integer>(setup.p_pixel[k]), setup.pixels);
       continue;
     }
     // An edge along the lines takes or leaves whole ones.
-    edges[k] = EdgeBound<Integer>(0, 0, 1, setup.pixels);
     while (first_line <= setup.lines && p + first_line * line < 0 && line > 0) ++first_line;
     while (last_line >= 0 && p + last_line * line < 0 && line <= 0) --last_line;
   }
   TilingCounts counts{.triangles = 1, .lines = setup.lines + 1};
   int start = 0;  // where the machine begins a line: at the first valid pixel of the one before
   for (int line = 0; line <= setup.lines; ++line) {
-    Integer first = start, last = setup.pixels;
-    for (EdgeBound<Integer>& edge : edges) {
-      first = std::max(first, edge.first());
-      last = std::min(last, edge.last());
-      edge.nextLine();
-    }
+    const Integer first = edges.first(start), last = edges.last(setup.pixels);
+    edges.nextLine();
     if (first > last || line < first_line || line > last_line) {
       // The whole rest of the line is looked through.
       counts.sampled += setup.pixels - start + 1;
