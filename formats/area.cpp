@@ -29,7 +29,8 @@ constexpr int kMaximumLevels = 32;
 constexpr std::array<std::string_view, 7> kRoleNames = {"nodes",  "terrain", "patches",   "seams",
                                                         "colors", "model",   "placements"};
 // What a reader must know to read more than terrain.
-constexpr std::string_view kColorFeature = "colors", kModelFeature = "models";
+constexpr std::string_view kPackedFeature = "packed_nodes", kColorFeature = "colors",
+                           kModelFeature = "models";
 constexpr std::size_t kMostAssets = 1 << 16;
 constexpr std::size_t kMaximumSentinels = 64;
 
@@ -444,7 +445,9 @@ AreaHeader readArea(const Json& json, std::string& fault) {
   area.sea_drop = members.number("sea_drop", 0, 1e8);
   Members nodes = members.object("nodes");
   area.node_count = static_cast<std::uint32_t>(nodes.integer("count", 1, UINT32_MAX));
-  area.nodes_per_page = static_cast<std::uint32_t>(nodes.integer("per_page", kNodesPerPage, kNodesPerPage));
+  area.nodes_per_page = static_cast<std::uint32_t>(nodes.integer("per_page", 1, UINT32_MAX));
+  if (area.nodes_per_page != kNodesPerPage && area.nodes_per_page != kNodesPerPlainPage)
+    nodes.fail("per_page", "is not a size that pages have");
   const Json& grids = members.array("grids", 1, 1 << 16);
   for (std::size_t i = 0; i < grids.size(); ++i)
     area.grids.push_back(readGrid(grids[i], fmt::format("grids[{}].", i), fault));
@@ -489,6 +492,7 @@ std::string serializeArea(const AreaHeader& area) {
   json["format"] = kFormatName;
   json["version"] = kAreaVersion;
   json["required_features"] = Json::array();
+  if (area.nodes_per_page != kNodesPerPlainPage) json["required_features"].push_back(kPackedFeature);
   if (!area.color_maps.empty()) json["required_features"].push_back(kColorFeature);
   // The list of placements outlives the last model, since it knows which numbers were given.
   const bool placed = std::any_of(area.files.begin(), area.files.end(), [](const FileReference& file) {
@@ -553,7 +557,7 @@ Result<AreaHeader> parseArea(std::string_view text, const std::string& where) {
         "Use a newer deltaz");
   }
   for (const Json& feature : members.array("required_features", 0, 1000)) {
-    if (feature == kColorFeature || feature == kModelFeature) continue;
+    if (feature == kPackedFeature || feature == kColorFeature || feature == kModelFeature) continue;
     return newerFormatError(IssueCode::kHdrFeatureUnknown, where,
                             fmt::format("the database needs a feature this program does not have: {}",
                                         feature.dump(-1, ' ', true, Json::error_handler_t::replace)),

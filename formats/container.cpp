@@ -11,6 +11,7 @@ namespace deltaz {
 namespace {
 
 constexpr std::uint32_t kKnownRequiredFeatures = 0;
+constexpr std::uint16_t kVersionOfWholeEntries = 1;  // entries of 24 bytes, 128 to a page
 constexpr std::size_t kFooterChecksumOffset = kContainerFooterBytes - 8;
 constexpr std::size_t kHeaderChecksumOffset = kContainerHeaderBytes - 8;
 
@@ -44,7 +45,7 @@ bool allZero(std::span<const std::byte> bytes) {
 const char* const kDamaged = "The file is damaged; restore it or rebuild the database";
 
 Status checkHeader(std::span<const std::byte> header, ContentKind kind, const std::string& path,
-                   std::uint32_t& optional_features) {
+                   std::uint16_t& version, std::uint32_t& optional_features) {
   if (!hasMagic(header, kContainerMagic)) {
     return invalidError(IssueCode::kHdrMagic, path, "this is not a deltaz file",
                         "its first bytes are not the magic number");
@@ -54,7 +55,7 @@ Status checkHeader(std::span<const std::byte> header, ContentKind kind, const st
     return invalidError(IssueCode::kHdrChecksum, path, "the header does not match its checksum", {},
                         kDamaged);
   }
-  const auto version = loadLittleEndian<std::uint16_t>(header, 8);
+  version = loadLittleEndian<std::uint16_t>(header, 8);
   if (version > kContainerVersion) {
     return newerFormatError(
         IssueCode::kHdrVersionNewer, path,
@@ -137,9 +138,9 @@ Result<FileIdentity> ContainerWriter::finish() {
   for (std::size_t first = 0; first < blocks_.size(); first += kIndexEntriesPerPage) {
     ByteWriter page;
     const std::size_t end = std::min(blocks_.size(), first + kIndexEntriesPerPage);
+    page.put(blocks_[first].offset);
     for (std::size_t i = first; i < end; ++i) {
       const BlockLocation& block = blocks_[i];
-      page.put(block.offset);
       page.put(block.length);
       page.put(static_cast<std::uint32_t>(block.type));
       page.put(blockChecksum(block.checksum, file_id, block.offset, block.length, block.type));
@@ -186,7 +187,9 @@ Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std
                         {}, kDamaged);
   }
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> header, reader.readBytes(0, kContainerHeaderBytes));
-  DELTAZ_TRY(checkHeader(header, kind, path, reader.optional_features_));
+  std::uint16_t version = 0;
+  DELTAZ_TRY(checkHeader(header, kind, path, version, reader.optional_features_));
+  if (version == kVersionOfWholeEntries) reader.index_ = {24, 128, 8, true};
   DELTAZ_TRY_ASSIGN(const std::vector<std::byte> footer,
                     reader.readBytes(length - kContainerFooterBytes, kContainerFooterBytes));
   const std::span<const std::byte> bytes(footer);
@@ -209,13 +212,14 @@ Result<ContainerReader> ContainerReader::open(const FileSystem& files, const std
                         kDamaged);
   }
   // Counts are compared with what the file can hold before they size anything.
+  const IndexLayout& index = reader.index_;
   const std::uint64_t pages =
-      (static_cast<std::uint64_t>(reader.block_count_) + kIndexEntriesPerPage - 1) / kIndexEntriesPerPage;
+      (static_cast<std::uint64_t>(reader.block_count_) + index.entries_per_page - 1) / index.entries_per_page;
   const std::uint64_t index_bytes =
-      static_cast<std::uint64_t>(reader.block_count_) * kIndexEntryBytes + pages * 8;
+      static_cast<std::uint64_t>(reader.block_count_) * index.entry_bytes + pages * index.frame_bytes;
   const std::uint64_t index_end = length - kContainerFooterBytes;
-  if (stated_kind != static_cast<std::uint16_t>(kind) || stated_version == 0 ||
-      stated_version > kContainerVersion || !allZero(bytes.subspan(48, kFooterChecksumOffset - 48)) ||
+  if (stated_kind != static_cast<std::uint16_t>(kind) || stated_version != version ||
+      !allZero(bytes.subspan(48, kFooterChecksumOffset - 48)) ||
       reader.index_offset_ < kContainerHeaderBytes || reader.index_offset_ % kBlockAlignment != 0 ||
       index_bytes > index_end || reader.index_offset_ != index_end - index_bytes) {
     return invalidError(IssueCode::kHdrField, path, "the footer's fields do not fit the file", {}, kDamaged);
@@ -229,54 +233,64 @@ Result<BlockLocation> ContainerReader::locate(std::uint32_t number) const {
     return invalidError(IssueCode::kRefData, path_,
                         fmt::format("there is no block {}; the file has {}", number, block_count_));
   }
-  const std::size_t page_number = number / kIndexEntriesPerPage;
+  const std::size_t page_number = number / index_.entries_per_page;
+  const std::size_t slot = number % index_.entries_per_page;
   {
     const std::lock_guard guard(cache_->mutex);
     const std::vector<BlockLocation>& page = cache_->pages[page_number];
-    if (!page.empty()) return page[number % kIndexEntriesPerPage];
+    if (!page.empty()) return page[slot];
   }
-  const std::uint64_t offset = index_offset_ + page_number * kIndexPageBytes;
   const std::size_t entries =
-      std::min<std::size_t>(kIndexEntriesPerPage, block_count_ - page_number * kIndexEntriesPerPage);
-  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, readBytes(offset, entries * kIndexEntryBytes + 8));
+      std::min<std::size_t>(index_.entries_per_page, block_count_ - page_number * index_.entries_per_page);
+  std::uint64_t bytes_read = 0;
+  DELTAZ_TRY_ASSIGN(const std::vector<BlockLocation> page, readIndexPage(page_number, entries, bytes_read));
+  const std::lock_guard guard(cache_->mutex);
+  // Threads that want a page at the same time all read it; the count must not tell how many they were.
+  if (!cache_->pages[page_number].empty()) cache_->bytes_read -= bytes_read;
+  cache_->pages[page_number] = page;
+  return page[slot];
+}
+
+Result<std::vector<BlockLocation>> ContainerReader::readIndexPage(std::size_t page_number,
+                                                                  std::size_t entries,
+                                                                  std::uint64_t& bytes_read) const {
+  const std::uint64_t full_page_bytes = index_.entries_per_page * index_.entry_bytes + index_.frame_bytes;
+  const std::uint64_t offset = index_offset_ + page_number * full_page_bytes;
+  bytes_read = entries * index_.entry_bytes + index_.frame_bytes;
+  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, readBytes(offset, bytes_read));
   const std::span<const std::byte> view(bytes);
-  const std::span<const std::byte> body = view.first(entries * kIndexEntryBytes);
+  const std::span<const std::byte> body = view.first(bytes.size() - 8);
   if (loadLittleEndian<std::uint64_t>(view, body.size()) != pageChecksum(body, identity_.id, offset)) {
     return invalidError(IssueCode::kIdxChecksum, path_,
                         fmt::format("index page {} does not match its checksum", page_number), {}, kDamaged);
   }
   std::vector<BlockLocation> page;
   ByteReader fields(body);
+  // Blocks follow each other: the first one's offset and the lengths say where each lies.
+  std::uint64_t expected = page_number == 0 ? kContainerHeaderBytes : 0;
+  std::uint64_t next = index_.offset_in_entry ? 0 : fields.get<std::uint64_t>();
   for (std::size_t i = 0; i < entries; ++i) {
     BlockLocation block;
-    block.offset = fields.get<std::uint64_t>();
+    block.offset = index_.offset_in_entry ? fields.get<std::uint64_t>() : next;
     block.length = fields.get<std::uint32_t>();
     block.type = static_cast<BlockType>(fields.get<std::uint32_t>());
     block.checksum = fields.get<std::uint64_t>();
+    const std::size_t number = page_number * index_.entries_per_page + i;
     if (block.offset < kContainerHeaderBytes || block.offset > index_offset_ || block.length == 0 ||
         block.length > kMaximumBlockBytes || block.length > index_offset_ - block.offset ||
         block.offset % kBlockAlignment != 0) {
-      return invalidError(
-          IssueCode::kIdxOrder, path_,
-          fmt::format("block {} lies outside the file's blocks", page_number * kIndexEntriesPerPage + i), {},
-          kDamaged);
+      return invalidError(IssueCode::kIdxOrder, path_,
+                          fmt::format("block {} lies outside the file's blocks", number), {}, kDamaged);
     }
-    // Two entries exchanged would hand out two intact blocks as each other.
-    const BlockLocation* before = page.empty() ? nullptr : &page.back();
-    if (before != nullptr ? block.offset != roundUpToAlignment(before->offset + before->length)
-                          : page_number == 0 && block.offset != kContainerHeaderBytes) {
-      return invalidError(
-          IssueCode::kIdxOrder, path_,
-          fmt::format("block {} does not follow the one before it", page_number * kIndexEntriesPerPage + i),
-          {}, kDamaged);
+    // Two whole entries exchanged would hand out two intact blocks as each other.
+    if (expected != 0 && block.offset != expected) {
+      return invalidError(IssueCode::kIdxOrder, path_,
+                          fmt::format("block {} does not follow the one before it", number), {}, kDamaged);
     }
+    expected = next = roundUpToAlignment(block.offset + block.length);
     page.push_back(block);
   }
-  const std::lock_guard guard(cache_->mutex);
-  // Threads that want a page at the same time all read it; the count must not tell how many they were.
-  if (!cache_->pages[page_number].empty()) cache_->bytes_read -= bytes.size();
-  cache_->pages[page_number] = page;
-  return page[number % kIndexEntriesPerPage];
+  return page;
 }
 
 Result<std::vector<std::byte>> ContainerReader::read(std::uint32_t number, BlockType type) const {

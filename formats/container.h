@@ -25,12 +25,14 @@ namespace deltaz {
 
 inline constexpr std::array<std::uint8_t, 8> kContainerMagic = {0x89, 'D', 'L', 'Z', '\r', '\n', 0x1A, '\n'};
 inline constexpr std::array<std::uint8_t, 8> kFooterMagic = {'D', 'L', 'Z', 'f', 'o', 'o', 't', '\n'};
-inline constexpr std::uint16_t kContainerVersion = 1;
+inline constexpr std::uint16_t kContainerVersion = 2;  // version 1 had other index pages, and is read too
 inline constexpr std::size_t kContainerHeaderBytes = 32;
 inline constexpr std::size_t kContainerFooterBytes = 80;
-inline constexpr std::size_t kIndexEntryBytes = 24;
-inline constexpr std::size_t kIndexEntriesPerPage = 128;
-inline constexpr std::size_t kIndexPageBytes = kIndexEntryBytes * kIndexEntriesPerPage + 8;
+// A view wants a few blocks here and there: small pages cost it little.
+inline constexpr std::size_t kIndexEntryBytes = 16;
+inline constexpr std::size_t kIndexEntriesPerPage = 8;
+inline constexpr std::size_t kIndexPageFrameBytes = 16;  // the first block's offset, and the checksum
+inline constexpr std::size_t kIndexPageBytes = kIndexEntryBytes * kIndexEntriesPerPage + kIndexPageFrameBytes;
 inline constexpr std::size_t kBlockAlignment = 8;
 inline constexpr std::uint32_t kMaximumBlockBytes = 1u << 30;
 
@@ -57,7 +59,8 @@ enum class BlockType : std::uint32_t {
   kModelMesh = 8,
   kModelTree = 9,
   kPlacementPage = 10,
-  kPlacementDirectory = 11
+  kPlacementDirectory = 11,
+  kPackedNodePage = 12
 };
 
 struct BlockLocation {
@@ -104,7 +107,7 @@ class ContainerWriter {
 // thread.
 class ContainerReader {
  public:
-  // Reads header and footer only. `path` is used in messages.
+  // Reads header and footer only, of any version up to kContainerVersion. `path` is used in messages.
   static Result<ContainerReader> open(const FileSystem& files, const std::string& path, ContentKind kind);
 
   std::uint32_t blockCount() const { return block_count_; }
@@ -130,8 +133,18 @@ class ContainerReader {
   Status checkFileId() const;
 
  private:
+  // How the index of a version is laid out.
+  struct IndexLayout {
+    std::size_t entry_bytes = kIndexEntryBytes;
+    std::size_t entries_per_page = kIndexEntriesPerPage;
+    std::size_t frame_bytes = kIndexPageFrameBytes;
+    bool offset_in_entry = false;  // or only the first one, before the entries
+  };
+
   ContainerReader() = default;
   Result<std::vector<std::byte>> readBytes(std::uint64_t offset, std::uint64_t length) const;
+  Result<std::vector<BlockLocation>> readIndexPage(std::size_t page_number, std::size_t entries,
+                                                   std::uint64_t& bytes_read) const;
 
   std::string path_;
   std::unique_ptr<ReadableFile> file_;
@@ -139,6 +152,7 @@ class ContainerReader {
   std::uint32_t block_count_ = 0;
   std::uint32_t optional_features_ = 0;
   std::uint64_t index_offset_ = 0;
+  IndexLayout index_;
   // What is learnt while reading; shared by all threads.
   struct Cache {
     std::mutex mutex;

@@ -1,4 +1,4 @@
-// The node file: the quadtree as fixed-size records in breadth-first order, several records to a checksummed
+// The node file: the quadtree as records in breadth-first order, several records to a packed and checksummed
 // page, so that the first page is a whole coarse area and a view reads only the pages it needs. Specified in
 // node_file.md.
 //
@@ -17,8 +17,11 @@
 
 namespace deltaz {
 
-inline constexpr std::size_t kNodeRecordBytes = 96;
-inline constexpr std::uint32_t kNodesPerPage = 64;
+// Small pages, since a view wants few records of each level and they lie apart.
+inline constexpr std::uint32_t kNodesPerPage = 16;
+// Of the first databases, whose pages were plain.
+inline constexpr std::uint32_t kNodesPerPlainPage = 64;
+inline constexpr std::size_t kPlainNodeRecordBytes = 96;
 inline constexpr std::uint32_t kUnknownError = 0xFFFFFFFF;  // stands for infinity
 inline constexpr std::uint8_t kAreaLevel = 255;             // level of the area's own record
 inline constexpr std::uint32_t kNoBlock = 0xFFFFFFFF;
@@ -58,10 +61,16 @@ struct NodeRecord {
   bool isEmpty() const { return (flags & kNodeIsEmpty) != 0; }
 };
 
-// The bytes of a page: up to kNodesPerPage records, the last page only as long as its records.
-std::vector<std::byte> encodeNodePage(std::span<const NodeRecord> records);
+// The bytes of a page: 1 to kNodesPerPage records, of which the first has number `first_number`.
+std::vector<std::byte> encodeNodePage(std::span<const NodeRecord> records, std::uint32_t first_number);
 
-// Checks what a record can say by itself: known type and flags, child number, reserved bytes zero.
-Result<std::vector<NodeRecord>> decodeNodePage(std::span<const std::byte> bytes, const std::string& where);
+// Checks what a record can say by itself: known type and flags, child number, values within their fields. A
+// page has one form, and only that is taken.
+Result<std::vector<NodeRecord>> decodeNodePage(std::span<const std::byte> bytes, std::uint32_t first_number,
+                                               const std::string& where);
+
+// The same for a plain page: up to kNodesPerPlainPage records of kPlainNodeRecordBytes, reserved bytes zero.
+Result<std::vector<NodeRecord>> decodePlainNodePage(std::span<const std::byte> bytes,
+                                                    const std::string& where);
 
 }  // namespace deltaz

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "libdb/access/node_pages.h"
 #include "libdb/access/referenced_file.h"
 
 namespace deltaz {
@@ -170,7 +171,7 @@ Result<Database> Database::openOnce(const FileSystem& files, const std::string& 
     return invalidError(IssueCode::kManField, area_path,
                         "not every colour map and every model has its file listed");
   }
-  const std::uint64_t pages = (std::uint64_t{database.area_.node_count} + kNodesPerPage - 1) / kNodesPerPage;
+  const std::uint32_t pages = nodePageCount(database.area_);
   if (database.nodes_->blockCount() != pages) {
     return invalidError(IssueCode::kManField, area_path,
                         fmt::format("{} records need {} pages, the node file has {}",
@@ -226,21 +227,13 @@ Result<NodeRecord> Database::record(std::uint32_t number) const {
     return invalidError(IssueCode::kRefRange, nodes_->path(),
                         fmt::format("there is no record {}; the last is {}", number, area_.node_count));
   }
-  const std::uint32_t page_number = (number - 1) / kNodesPerPage;
-  const std::size_t slot = (number - 1) % kNodesPerPage;
+  const std::uint32_t page_number = (number - 1) / area_.nodes_per_page;
+  const std::size_t slot = (number - 1) % area_.nodes_per_page;
   {
     const std::lock_guard guard(page_cache_->mutex);
     if (const auto& page = page_cache_->pages[page_number]) return (*page)[slot];
   }
-  DELTAZ_TRY_ASSIGN(const std::vector<std::byte> bytes, nodes_->read(page_number, BlockType::kNodePage));
-  DELTAZ_TRY_ASSIGN(std::vector<NodeRecord> records,
-                    decodeNodePage(bytes, fmt::format("{}, block {}", nodes_->path(), page_number)));
-  const std::size_t expected =
-      std::min<std::size_t>(kNodesPerPage, area_.node_count - page_number * kNodesPerPage);
-  if (records.size() != expected) {
-    return invalidError(IssueCode::kRefRecord, nodes_->path(),
-                        fmt::format("page {} has {} records, not {}", page_number, records.size(), expected));
-  }
+  DELTAZ_TRY_ASSIGN(std::vector<NodeRecord> records, readNodePage(*nodes_, area_, page_number));
   const NodeRecord result = records[slot];
   const std::lock_guard guard(page_cache_->mutex);
   page_cache_->pages[page_number] = std::make_shared<const std::vector<NodeRecord>>(std::move(records));

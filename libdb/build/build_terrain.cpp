@@ -274,7 +274,8 @@ class AreaBuild {
       const std::span<const NodeRecord> page =
           std::span(records).subspan(first, std::min<std::size_t>(kNodesPerPage, records.size() - first));
       DELTAZ_TRY_ASSIGN([[maybe_unused]] const std::uint32_t block,
-                        writer.append(BlockType::kNodePage, encodeNodePage(page)));
+                        writer.append(BlockType::kPackedNodePage,
+                                      encodeNodePage(page, static_cast<std::uint32_t>(first + 1))));
     }
     DELTAZ_TRY_ASSIGN(const FileIdentity identity, writer.finish());
     area_.files.insert(area_.files.begin(), {FileRole::kNodes, 0, name, identity.length, identity.id});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/seam.h"
+#include "libdb/access/node_pages.h"
 #include "libdb/access/referenced_file.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/report_detail.h"
@@ -116,7 +117,7 @@ void checkFileList(CheckContext& context) {
   if (next[FileRole::kPlacements] > 1) complain("two files of placements are listed");
   if (node_files != 1) complain(fmt::format("{} node files are listed, not one", node_files));
   if (context.nodes == nullptr) return;
-  const std::uint32_t pages = (context.area.node_count - 1) / kNodesPerPage + 1;
+  const std::uint32_t pages = nodePageCount(context.area);
   const std::uint32_t blocks = context.nodes->container->blockCount();
   if (blocks != pages) {
     complain(fmt::format("{} node records need {} pages, the node file has {}", context.area.node_count,

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "libdb/access/node_pages.h"
 #include "libdb/check/check_context.h"
 #include "libdb/check/parallel_report.h"
 #include "libdb/check/report_detail.h"
@@ -62,19 +63,10 @@ class TreeRule {
       IssueLocation where;
       where.file = file.reference.name;
       where.block = number;
-      const auto bytes = container.read(number, BlockType::kNodePage);
-      if (!bytes.ok()) {
-        if (bytes.error().code == IssueCode::kSumBlock) file.damaged_blocks[item] = 1;
-        return addError(report, bytes.error(), where);
-      }
-      auto records = decodeNodePage(bytes.value(), container.path());
-      if (!records.ok()) return addError(report, records.error(), where);
-      const std::size_t expected =
-          std::min<std::size_t>(kNodesPerPage, context_.area.node_count - item * kNodesPerPage);
-      if (records.value().size() != expected) {
-        const std::string message =
-            fmt::format("the page has {} records, not {}", records.value().size(), expected);
-        return report.add(makeIssue(IssueCode::kRefRecord, message, where));
+      auto records = readNodePage(container, context_.area, number);
+      if (!records.ok()) {
+        if (records.error().code == IssueCode::kSumBlock) file.damaged_blocks[item] = 1;
+        return addError(report, records.error(), where);
       }
       pages[item] = std::move(records).value();
     });
@@ -398,7 +390,7 @@ IssueLocation CheckContext::locate(std::uint32_t number) const {
   IssueLocation where;
   if (nodes != nullptr) where.file = nodes->reference.name;
   where.node = number;
-  where.block = (number - 1) / kNodesPerPage;
+  where.block = (number - 1) / area.nodes_per_page;
   if (number == 0 || number > records.size()) return where;
   const NodeRecord& node = record(number);
   if (node.type != NodeType::kTerrain || node.grid >= grids.size()) return where;

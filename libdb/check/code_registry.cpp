@@ -77,7 +77,7 @@ constexpr std::array kRegistry = {
                     "finished.",
                     kRestore, "container.md 1.3"},
     CodeDescription{IssueCode::kIdxChecksum, kError, kStructure, "a page of the block index is damaged",
-                    "The page does not match its checksum, so none of its 128 blocks can be found.", kRestore,
+                    "The page does not match its checksum, so none of its blocks can be found.", kRestore,
                     "container.md 1.2"},
     CodeDescription{
         IssueCode::kIdxOrder, kError, kStructure, "blocks overlap, leave gaps or lie outside",
@@ -129,8 +129,8 @@ constexpr std::array kRegistry = {
                     "Level, position, child number, grid or order of a node contradict its parent.", kRebuild,
                     "node_file.md 1"},
     CodeDescription{IssueCode::kRefRecord, kError, kStructure, "a node record holds an impossible value",
-                    "Type, flags, reserved bytes, level or position of a record, or the number of records of "
-                    "a page, are out "
+                    "A page is not packed as it must be, or has too many or too few records, or type, flags, "
+                    "level or position of a record are out "
                     "of range.",
                     kRebuild, "node_file.md 2"},
     CodeDescription{IssueCode::kRefData, kError, kStructure, "a node's data is not where its record says",

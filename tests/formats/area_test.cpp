@@ -20,7 +20,7 @@ AreaHeader sampleArea() {
   area.highest_height = 4371;
   area.sea_drop = 0.328125;
   area.node_count = 554;
-  area.nodes_per_page = 64;
+  area.nodes_per_page = 16;
   GridHeader grid;
   grid.crs_wkt = "GEOGCRS[\"WGS 84\"]";
   grid.horizontal_datum = "WGS_1984";
@@ -83,7 +83,7 @@ TEST(Area, a_newer_version_or_required_feature_is_refused_as_newer) {
   EXPECT_EQ(parseArea(withReplaced("\"version\": 1", "\"version\": 2"), "a").error().kind,
             ErrorKind::kNewerFormat);
   const Result<AreaHeader> feature =
-      parseArea(withReplaced("\"required_features\": []", "\"required_features\": [\n    \"tin\"\n  ]"), "a");
+      parseArea(withReplaced("\"packed_nodes\"\n", "\"packed_nodes\",\n    \"tin\"\n"), "a");
   ASSERT_FALSE(feature.ok());
   EXPECT_EQ(feature.error().kind, ErrorKind::kNewerFormat);
   EXPECT_NE(feature.error().message().find("tin"), std::string::npos);
@@ -162,7 +162,7 @@ TEST(Area, features_are_named_where_they_are_used_and_nowhere_else) {
     return text.substr(begin, text.find(']', begin) - begin);
   };
   const std::string plain = serializeArea(sampleArea());
-  EXPECT_NE(plain.find("\"required_features\": [],"), std::string::npos);
+  EXPECT_NE(plain.find("\"required_features\": [\n    \"packed_nodes\"\n  ],"), std::string::npos);
   for (const char* const word : {"colors", "color_maps", "models", "placements"})
     EXPECT_EQ(plain.find(word), std::string::npos) << word;
   AreaHeader colored = areaWithAssets();
@@ -182,11 +182,23 @@ TEST(Area, features_are_named_where_they_are_used_and_nowhere_else) {
 
 TEST(Area, a_feature_that_is_not_used_is_not_canonical) {
   EXPECT_EQ(
-      parseArea(withReplaced("\"required_features\": []", "\"required_features\": [\n    \"colors\"\n  ]"),
-                "a")
-          .error()
-          .code,
+      parseArea(withReplaced("\"packed_nodes\"\n", "\"packed_nodes\",\n    \"colors\"\n"), "a").error().code,
       IssueCode::kManField);
+}
+
+// Programs that know only plain pages are told by a feature; databases of theirs stay what they are.
+TEST(Area, pages_of_nodes_are_packed_or_those_of_the_first_databases) {
+  AreaHeader area = sampleArea();
+  area.nodes_per_page = kNodesPerPlainPage;
+  const std::string text = serializeArea(area);
+  EXPECT_EQ(text.find("packed_nodes"), std::string::npos);
+  EXPECT_EQ(parseArea(text, "a").value(), area);
+  for (const char* const size : {"0", "1", "32", "4294967295"}) {
+    const std::string per_page = std::string("\"per_page\": ") + size;
+    EXPECT_EQ(parseArea(withReplaced("\"per_page\": 16", per_page), "a").error().code, IssueCode::kManField);
+  }
+  EXPECT_FALSE(parseArea(withReplaced("\"per_page\": 16", "\"per_page\": 64"), "a").ok())
+      << "plain pages under the feature of packed ones";
 }
 
 TEST(Area, names_of_colour_maps_and_models_are_plain_and_unique) {

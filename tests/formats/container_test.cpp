@@ -67,7 +67,7 @@ TEST(Container, a_newer_version_or_feature_is_refused_as_newer) {
   const FileBytes good = files.bytes(kPath);
   for (const std::size_t offset : {kHeaderVersionOffset, kHeaderRequiredOffset}) {
     FileBytes bytes = good;
-    bytes[offset] = std::byte{2};
+    bytes[offset] = static_cast<std::byte>(kContainerVersion + 1);
     sealHeader(bytes);
     files.setBytes(kPath, bytes);
     const Result<ContainerReader> reader = ContainerReader::open(files, kPath, ContentKind::kTerrain);
@@ -110,6 +110,25 @@ TEST(Container, an_impossible_block_count_is_refused) {
   const Result<ContainerReader> reader = ContainerReader::open(files, kPath, ContentKind::kTerrain);
   ASSERT_FALSE(reader.ok());
   EXPECT_EQ(reader.error().code, IssueCode::kHdrField);
+}
+
+// Only the first block of an index page says where it lies; the pages must go on from each other all the
+// same.
+TEST(Container, an_index_page_that_begins_elsewhere_is_refused) {
+  MemoryFileSystem files = emptyDisk();
+  writeContainer(files, kPath, Payloads(kIndexEntriesPerPage + 2, std::vector<std::byte>(8, std::byte{7})));
+  FileBytes bytes = files.bytes(kPath);
+  const auto second_page = static_cast<std::uint32_t>(kIndexEntriesPerPage);
+  BlockLocation entry = entryOf(bytes, second_page);
+  entry.offset -= kBlockAlignment;  // the block before it holds the same bytes
+  storeEntry(bytes, second_page, entry);
+  sealIndexPages(bytes);
+  files.setBytes(kPath, bytes);
+  const Result<ContainerReader> reader = ContainerReader::open(files, kPath, ContentKind::kTerrain);
+  ASSERT_TRUE(reader.ok());
+  EXPECT_TRUE(reader.value().read(second_page - 1, BlockType::kTerrainNode).ok());
+  EXPECT_EQ(reader.value().read(second_page, BlockType::kTerrainNode).error().code, IssueCode::kSumBlock);
+  EXPECT_EQ(reader.value().checkIndex().error().code, IssueCode::kIdxOrder);
 }
 
 }  // namespace

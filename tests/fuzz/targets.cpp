@@ -78,7 +78,8 @@ constexpr std::uint8_t kSealHeader = 1, kSealFooter = 2, kSealIndex = 4, kSealAl
 bool indexFits(const FileBytes& file) {
   const std::uint64_t index = indexOffset(file), blocks = blockCount(file);
   const std::uint64_t pages = (blocks + kIndexEntriesPerPage - 1) / kIndexEntriesPerPage;
-  return index <= footerOffset(file) && blocks * kIndexEntryBytes + pages * 8 <= footerOffset(file) - index;
+  return index <= footerOffset(file) &&
+         blocks * kIndexEntryBytes + pages * kIndexPageFrameBytes <= footerOffset(file) - index;
 }
 
 void fuzzContainer(std::span<const std::byte> input) {
@@ -151,17 +152,32 @@ std::vector<FuzzInput> areaSeeds() {
 // ---- a page of node records
 
 void fuzzNodePage(std::span<const std::byte> input) {
-  const auto records = decodeNodePage(input, "page");
+  constexpr std::uint32_t kFirst = 1;
+  const auto records = decodeNodePage(input, kFirst, "page");
   if (!records.ok()) return;
-  const auto bytes = encodeNodePage(records.value());
-  promise(bytes.size() == input.size() && std::equal(bytes.begin(), bytes.end(), input.begin()),
-          "a page has one form");
+  const auto bytes = encodeNodePage(records.value(), kFirst);
+  promise(std::equal(bytes.begin(), bytes.end(), input.begin(), input.end()), "a page has one form");
 }
 
 std::vector<FuzzInput> nodePageSeeds() {
-  const auto& nodes = soundDatabase().bytes(soundEditor().nodePath());
-  const std::vector<std::byte> page = payloadOf(nodes, 0);
-  return {page, FuzzInput(page.begin(), page.begin() + kNodeRecordBytes)};
+  const FileBytes& nodes = soundDatabase().bytes(soundEditor().nodePath());
+  std::vector<FuzzInput> seeds;
+  for (std::uint32_t page = 0; page < blockCount(nodes); ++page) seeds.push_back(payloadOf(nodes, page));
+  return seeds;
+}
+
+void fuzzPlainNodePage(std::span<const std::byte> input) {
+  const auto records = decodePlainNodePage(input, "page");
+  promise(!records.ok() || records.value().size() * kPlainNodeRecordBytes == input.size(),
+          "every record is read");
+}
+
+std::vector<FuzzInput> plainNodePageSeeds() {
+  FuzzInput record(kPlainNodeRecordBytes);
+  std::fill_n(record.begin() + 28, 4, std::byte{0xFF});  // a cluster has no block
+  FuzzInput page = record;
+  page.insert(page.end(), record.begin(), record.end());
+  return {record, page};
 }
 
 // ---- a terrain block, and the codec inside it
@@ -518,6 +534,7 @@ std::span<const FuzzTarget> fuzzTargets() {
       FuzzTarget{"container", fuzzContainer, containerSeeds},
       FuzzTarget{"area", fuzzArea, areaSeeds},
       FuzzTarget{"node_page", fuzzNodePage, nodePageSeeds},
+      FuzzTarget{"plain_node_page", fuzzPlainNodePage, plainNodePageSeeds},
       FuzzTarget{"terrain_block", fuzzTerrainBlock, terrainBlockSeeds},
       FuzzTarget{"codec", fuzzCodec, codecSeeds},
       FuzzTarget{"color_file", fuzzColorFile, colorFileSeeds},

@@ -34,16 +34,26 @@ std::uint32_t blockCount(const FileBytes& file) {
   return loadLittleEndian<std::uint32_t>(file, footerOffset(file) + kFooterCountOffset);
 }
 
+std::size_t indexPageOffset(const FileBytes& file, std::uint32_t number) {
+  return indexOffset(file) + number / kIndexEntriesPerPage * kIndexPageBytes;
+}
+
 std::size_t entryOffset(const FileBytes& file, std::uint32_t number) {
-  return indexOffset(file) + number / kIndexEntriesPerPage * kIndexPageBytes +
-         number % kIndexEntriesPerPage * kIndexEntryBytes;
+  return indexPageOffset(file, number) + 8 + number % kIndexEntriesPerPage * kIndexEntryBytes;
 }
 
 BlockLocation entryOf(const FileBytes& file, std::uint32_t number) {
   const std::span<const std::byte> bytes(file);
-  ByteReader reader(bytes.subspan(entryOffset(file, number), kIndexEntryBytes));
+  const auto lengthOf = [&](std::uint32_t block) {
+    return loadLittleEndian<std::uint32_t>(bytes, entryOffset(file, block));
+  };
   BlockLocation entry;
-  entry.offset = reader.get<std::uint64_t>();
+  // Only the first block of a page says where it lies.
+  entry.offset = loadLittleEndian<std::uint64_t>(bytes, indexPageOffset(file, number));
+  const auto first = static_cast<std::uint32_t>(number - number % kIndexEntriesPerPage);
+  for (std::uint32_t before = first; before < number; ++before)
+    entry.offset += (lengthOf(before) + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
+  ByteReader reader(bytes.subspan(entryOffset(file, number), kIndexEntryBytes));
   entry.length = reader.get<std::uint32_t>();
   entry.type = static_cast<BlockType>(reader.get<std::uint32_t>());
   entry.checksum = reader.get<std::uint64_t>();
@@ -51,11 +61,11 @@ BlockLocation entryOf(const FileBytes& file, std::uint32_t number) {
 }
 
 void storeEntry(FileBytes& file, std::uint32_t number, const BlockLocation& entry) {
+  if (number % kIndexEntriesPerPage == 0) store(file, indexPageOffset(file, number), entry.offset);
   const std::size_t offset = entryOffset(file, number);
-  store(file, offset, entry.offset);
-  store(file, offset + 8, entry.length);
-  store(file, offset + 12, static_cast<std::uint32_t>(entry.type));
-  store(file, offset + 16, entry.checksum);
+  store(file, offset, entry.length);
+  store(file, offset + 4, static_cast<std::uint32_t>(entry.type));
+  store(file, offset + 8, entry.checksum);
 }
 
 void sealHeader(FileBytes& file) {
@@ -70,13 +80,14 @@ void sealFooter(FileBytes& file) {
 void sealIndexPages(FileBytes& file) {
   const Hash128 id = idOf(file);
   for (std::uint32_t first = 0; first < blockCount(file); first += kIndexEntriesPerPage) {
-    const std::size_t offset = entryOffset(file, first);
+    const std::size_t offset = indexPageOffset(file, first);
     const std::size_t entries = std::min<std::size_t>(kIndexEntriesPerPage, blockCount(file) - first);
+    const std::size_t summed = 8 + entries * kIndexEntryBytes;
     ByteWriter writer;
-    writer.putBytes(std::span(file).subspan(offset, entries * kIndexEntryBytes));
+    writer.putBytes(std::span(file).subspan(offset, summed));
     writer.putBytes(id.bytes);
     writer.put(static_cast<std::uint64_t>(offset));
-    store(file, offset + entries * kIndexEntryBytes, hash64(writer.view()));
+    store(file, offset + summed, hash64(writer.view()));
   }
 }
 

@@ -33,9 +33,11 @@ void store(FileBytes& file, std::size_t offset, T value) {
 std::size_t footerOffset(const FileBytes& file);
 std::size_t indexOffset(const FileBytes& file);
 std::uint32_t blockCount(const FileBytes& file);
-// Place of the index entry of block `number`.
+// Place of the index page and of the index entry of block `number`.
+std::size_t indexPageOffset(const FileBytes& file, std::uint32_t number);
 std::size_t entryOffset(const FileBytes& file, std::uint32_t number);
 BlockLocation entryOf(const FileBytes& file, std::uint32_t number);
+// The offset is stored for the first block of a page; those of others follow from the lengths before them.
 void storeEntry(FileBytes& file, std::uint32_t number, const BlockLocation& entry);
 
 void sealHeader(FileBytes& file);

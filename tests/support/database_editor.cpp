@@ -26,7 +26,8 @@ DatabaseEditor::DatabaseEditor(MemoryFileSystem& files, const std::string& path)
   }
   const FileBytes& nodes = files.bytes(nodePath());
   for (std::uint32_t page = 0; page < blockCount(nodes); ++page) {
-    const auto decoded = valueOrThrow(decodeNodePage(payloadOf(nodes, page), nodePath()));
+    const auto decoded =
+        valueOrThrow(decodeNodePage(payloadOf(nodes, page), page * kNodesPerPage + 1, nodePath()));
     records.insert(records.end(), decoded.begin(), decoded.end());
   }
   const FileBytes& terrain = files.bytes(terrainPath());
@@ -78,9 +79,10 @@ void DatabaseEditor::save() {
   std::vector<std::vector<std::byte>> pages;
   for (std::size_t first = 0; first < records.size(); first += kNodesPerPage) {
     pages.push_back(encodeNodePage(
-        std::span(records).subspan(first, std::min<std::size_t>(kNodesPerPage, records.size() - first))));
+        std::span(records).subspan(first, std::min<std::size_t>(kNodesPerPage, records.size() - first)),
+        static_cast<std::uint32_t>(first + 1)));
   }
-  files_.setBytes(nodePath(), makeContainer(ContentKind::kNodes, BlockType::kNodePage, pages));
+  files_.setBytes(nodePath(), makeContainer(ContentKind::kNodes, BlockType::kPackedNodePage, pages));
   files_.setBytes(terrainPath(), makeContainer(ContentKind::kTerrain, BlockType::kTerrainNode, payloads));
   area.node_count = static_cast<std::uint32_t>(records.size());
   saveArea(true);
