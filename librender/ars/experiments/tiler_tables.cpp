@@ -26,6 +26,9 @@ constexpr const char* kWithoutNeedles =
     "without needles: what the algorithm makes of ordinary triangles of this size";
 constexpr const char* kNeedlesOver = "the same triangles with needles, oversampled";
 
+constexpr const char* kSlower =
+    "the report's triangles take longer here than its times of set-up, loading and samples explain";
+
 // One mode of a row of Tables 23 and 24.
 struct PublishedMode {
   double size, efficiency;      // Table 23: pixels, per cent
@@ -223,10 +226,12 @@ std::vector<ReportRow> table24Rows(int triangles) {
   for (const Case& each : tableCases()) {
     const PublishedMode& published = publishedMode(each.row, each.oversample);
     const TilerMeasurement ours = measureTiler(each.population(), each.oversample, triangles);
+    // Rows 2 and 3: 11.8 and 13.2 us a triangle, oversampled.
+    const bool slower = each.oversample && (each.row == 1 || each.row == 2);
     rows.push_back({each.id("table24") + ".rate",
                     fmt::format("{}d triangles of {} pixels, million pixels a second",
                                 modeName(each.oversample), published.rate_size),
-                    published.mega_rate, ours.rate() * 1e-6, each.note()});
+                    published.mega_rate, ours.rate() * 1e-6, slower ? kSlower : each.note()});
   }
   return rows;
 }
