@@ -180,8 +180,8 @@ TEST(DistributionTree, counts_the_time_in_which_nothing_comes_as_starved) {
 TEST(DistributionTree, neither_loses_nor_stops_on_random_loads_with_small_queues) {
   std::mt19937 random(83);
   const auto below = [&random](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-  for (int trial = 0; trial < 300; ++trial) {
-    const int tilers = 1 << below(5), memories = 1 << below(5);
+  for (int trial = 0; trial < 150; ++trial) {
+    const int tilers = 1 << below(7), memories = 1 << below(7);
     const QueueDiscipline discipline =
         below(2) == 0 ? QueueDiscipline::kInputsFirst : QueueDiscipline::kQueueFirst;
     const int depth = std::array{0, 1, 2, 256}[static_cast<std::size_t>(below(4))];

@@ -71,5 +71,16 @@ TEST(MemoryTables, contention_is_the_reports_but_for_interleave_and_40_million_p
   EXPECT_GT(rows.at("figure92.sequential.memory_3").ours, 80'000);
 }
 
+// Digest 13: 456,131 pixels, 60.0 ms undersampled, 53.1 ms oversampled, memories 9.6 ms.
+TEST(MemoryTables, table_25_is_bound_by_set_up) {
+  const Rows rows = byId(table25Rows());
+  for (const char* mode : {"undersample", "oversample"})
+    EXPECT_NEAR(rows.at(std::string("table25.") + mode + ".depth_complexity").ratio().value(), 1, 0.01)
+        << mode;
+  EXPECT_NEAR(rows.at("table25.undersample.frame").ours, 60.0, 0.3);
+  EXPECT_NEAR(rows.at("table25.oversample.frame").ours, 53.1, 0.3);
+  EXPECT_NEAR(rows.at("table25.undersample.memory_busy").ours, 9.6, 0.4);
+}
+
 }  // namespace
 }  // namespace deltaz::ars

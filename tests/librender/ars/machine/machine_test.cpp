@@ -264,14 +264,14 @@ TEST(Machine, conserves_pixels_and_time_on_random_loads_with_small_queues) {
     const std::array list = {values...};
     return list[random() % list.size()];
   };
-  for (unsigned trial = 0; trial < 60; ++trial) {
+  for (unsigned trial = 0; trial < 40; ++trial) {
     RandomPixelOptions options = fewTriangles(trial);
     options.triangles = 120;
     options.line_sigma = one_of(0.0, 5.0, 80.0);
     RecordedPixels source = randomPixels(options);
     if (one_of(0, 1) == 1) source.drains = {40, 41, 100};
     MachineConfiguration configuration;
-    configuration.tilers = one_of(1, 2, 4, 8, 16);
+    configuration.tilers = one_of(1, 2, 4, 8, 16, 64);
     configuration.memories = one_of(1, 2, 4, 8, 16, 64);
     configuration.mode = one_of(HashingMode::kSequential, HashingMode::kInterleave, HashingMode::kScramble);
     configuration.discipline = one_of(QueueDiscipline::kInputsFirst, QueueDiscipline::kQueueFirst);
