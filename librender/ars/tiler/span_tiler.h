@@ -47,45 +47,44 @@ struct StepSpan {
 template <typename Integer>
 class EdgeBounds {
  public:
-  explicit EdgeBounds(int pixels) { free_end_.fill(pixels); }
+  explicit EdgeBounds(int pixels) { last_.fill(pixels); }
   // slope is not 0.
-  void set(std::size_t edge, Integer p, Integer line, Integer slope, int pixels) {
+  void set(std::size_t edge, Integer p, Integer line, Integer slope) {
     const bool lower = slope > 0;
-    const Integer divisor = lower ? slope : -slope, sign = lower ? -1 : 1;
+    const Integer divisor = lower ? slope : -slope;
     const Integer quotient = floorDivide(p, divisor), whole = floorDivide(line, divisor);
     divisor_[edge] = divisor;
     remainder_[edge] = p - quotient * divisor;
     part_[edge] = line - whole * divisor;
-    bound_[edge] = sign * quotient;
-    whole_[edge] = sign * whole;
-    sign_[edge] = sign;
-    lower_[edge] = lower ? -1 : 0;
-    free_end_[edge] = lower ? pixels : 0;
+    if (lower) {
+      first_[edge] = -quotient;
+      first_whole_[edge] = -whole;
+      first_more_[edge] = -1;
+    } else {
+      last_[edge] = quotient;
+      last_whole_[edge] = whole;
+      last_more_[edge] = 1;
+    }
   }
-  Integer first(Integer least) const {
-    for (std::size_t k = 0; k < kEdges; ++k)
-      least = std::max(least, static_cast<Integer>(bound_[k] & lower_[k]));
-    return least;
-  }
-  Integer last(Integer greatest) const {
-    for (std::size_t k = 0; k < kEdges; ++k)
-      greatest = std::min(greatest, static_cast<Integer>((bound_[k] & ~lower_[k]) + free_end_[k]));
-    return greatest;
-  }
+  Integer first(Integer least) const { return std::max({least, first_[0], first_[1], first_[2]}); }
+  Integer last() const { return std::min({last_[0], last_[1], last_[2]}); }
   void nextLine() {
     for (std::size_t k = 0; k < kLanes; ++k) {
       const Integer remainder = remainder_[k] + part_[k];
       const Integer full = remainder >= divisor_[k] ? -1 : 0;
       remainder_[k] = remainder - (divisor_[k] & full);
-      bound_[k] += whole_[k] + (sign_[k] & full);
+      first_[k] += first_whole_[k] + (first_more_[k] & full);
+      last_[k] += last_whole_[k] + (last_more_[k] & full);
     }
   }
 
  private:
-  static constexpr std::size_t kEdges = 3, kLanes = 4;
+  static constexpr std::size_t kLanes = 4;  // three are used
   static Integer floorDivide(Integer a, Integer b) { return a / b - (a % b < 0 ? 1 : 0); }
-  std::array<Integer, kLanes> bound_{}, remainder_{}, divisor_{1, 1, 1, 1}, part_{}, whole_{}, sign_{},
-      lower_{}, free_end_{};
+  using Lanes = std::array<Integer, kLanes>;
+  Lanes remainder_{}, part_{}, divisor_{1, 1, 1, 1};
+  Lanes first_{}, first_whole_{}, first_more_{};
+  Lanes last_{}, last_whole_{}, last_more_{};
 };
 
 // Calls visit(line, span) for each line that has valid pixels; lines and spans count from the corner.
@@ -96,7 +95,7 @@ TilingCounts forEachSpanOf(const TilerSetup& setup, Visit&& visit) {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto p = static_cast<Integer>(setup.p_start[k]), line = static_cast<Integer>(setup.p_line[k]);
     if (setup.p_pixel[k] != 0) {
-      edges.set(k, p, line, static_cast<Integer>(setup.p_pixel[k]), setup.pixels);
+      edges.set(k, p, line, static_cast<Integer>(setup.p_pixel[k]));
       continue;
     }
     // An edge along the lines takes or leaves whole ones.
@@ -106,7 +105,7 @@ TilingCounts forEachSpanOf(const TilerSetup& setup, Visit&& visit) {
   TilingCounts counts{.triangles = 1, .lines = setup.lines + 1};
   int start = 0;  // where the machine begins a line: at the first valid pixel of the one before
   for (int line = 0; line <= setup.lines; ++line) {
-    const Integer first = edges.first(start), last = edges.last(setup.pixels);
+    const Integer first = edges.first(start), last = std::min<Integer>(edges.last(), setup.pixels);
     edges.nextLine();
     if (first > last || line < first_line || line > last_line) {
       // The whole rest of the line is looked through.
