@@ -81,7 +81,7 @@ DistributionTree::DistributionTree(int tilers, int memories, TreeInlets& inlets,
       queue_depth_(queue_depth),
       levels_(shape_.levels.size()),
       ready_(static_cast<std::size_t>(tilers)),
-      latest_(static_cast<std::size_t>(tilers * memories)) {
+      latest_(static_cast<std::size_t>(tilers) * static_cast<std::size_t>(memories)) {
   assert(queue_depth >= 0 && queue_depth <= kMaximumQueueDepth);
   outlet_.last_busy.fill(-1);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -144,7 +144,7 @@ void DistributionTree::splitLevel(std::size_t level, std::int64_t cycle) {
     const auto at = static_cast<std::size_t>(cell);
     if (b.holds(cell)) {
       const int bit = b.pixel[at].memory >> shape.routing_shift & 1;
-      const int to = shape.leads_to[static_cast<std::size_t>(2 * cell + bit)];
+      const int to = shape.leads_to[2 * at + static_cast<std::size_t>(bit)];
       if (down.holds(to)) {
         ++b.statistics[at].blocked;
       } else {
@@ -249,7 +249,7 @@ void DistributionTree::enterTree(std::int64_t cycle) {
 
 TreeStatistics DistributionTree::statistics(std::int64_t cycles) const {
   // A register that is empty now has starved since it was last busy.
-  const auto upTo = [cycles](const Registers& registers, int count) {
+  const auto up_to = [cycles](const Registers& registers, int count) {
     std::vector<RegisterStatistics> result(registers.statistics.begin(),
                                            registers.statistics.begin() + count);
     for (int k = 0; k < count; ++k) {
@@ -260,15 +260,15 @@ TreeStatistics DistributionTree::statistics(std::int64_t cycles) const {
   };
   TreeStatistics result{.cycles = cycles,
                         .levels = {},
-                        .outlets = upTo(outlet_, shape_.memories),
+                        .outlets = up_to(outlet_, shape_.memories),
                         .entered = entered_,
                         .left = left_,
                         .overtaken = overtaken_};
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const TreeLevel& shape = shape_.levels[l];
     TreeLevelStatistics level{
-        .kind = shape.kind, .inputs = upTo(levels_[l].inputs, shape.inputs()), .buffers = {}, .queues = {}};
-    if (shape.kind == CellKind::kSplit) level.buffers = upTo(levels_[l].buffers, shape.cells);
+        .kind = shape.kind, .inputs = up_to(levels_[l].inputs, shape.inputs()), .buffers = {}, .queues = {}};
+    if (shape.kind == CellKind::kSplit) level.buffers = up_to(levels_[l].buffers, shape.cells);
     for (const Queue& queue : levels_[l].queues) {
       level.queues.push_back({.direct = queue.direct,
                               .queued = queue.queued,

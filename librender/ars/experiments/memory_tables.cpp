@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <deque>
 #include <fmt/format.h>
 
@@ -70,8 +71,8 @@ PassStatistics timed(const MachineConfiguration& configuration, const PixelSourc
 // A burst: a pixel a cycle and tiler, for memories scattered about the middle one, round the end.
 constexpr int kBursts = 200, kBurstCycles = 100;
 int burstMemory(int memories, double sigma, RandomNumbers& random) {
-  constexpr int kFar = 1 << 20;  // a multiple of all numbers of memories
-  return (memories / 2 + static_cast<int>(kFar + sigma * gaussian(random) + 0.5)) % memories;
+  const auto offset = static_cast<int>(std::lround(sigma * gaussian(random)));
+  return ((memories / 2 + offset) % memories + memories) % memories;
 }
 // Of the memories at the worst that was expected, five million pixels a second (4.3.3.1). With the 6.67
 // million of the average the queues are half as long as the report says.
@@ -106,7 +107,8 @@ class QueueingModel {
     const TreeLevel& level = shape_.levels[l];
     const bool split = level.kind == CellKind::kSplit;
     const int bit = memory >> level.routing_shift & 1;
-    const auto output = static_cast<std::size_t>(2 * (split ? input : input / 2) + bit);
+    const int cell = split ? input : input / 2;
+    const std::size_t output = 2 * static_cast<std::size_t>(cell) + static_cast<std::size_t>(bit);
     if (split) {
       take(l + 1, level.leads_to[output], memory);
     } else {

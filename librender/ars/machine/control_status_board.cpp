@@ -218,7 +218,8 @@ Json jsonOf(const MachineConfiguration& configuration) {
 }  // namespace
 
 double depthComplexity(std::int64_t cycles, std::int64_t words) {
-  return words > 0 ? static_cast<double>(1000 * cycles / words) / 1000 : 0;
+  const std::int64_t thousandths = words > 0 ? 1000 * cycles / words : 0;
+  return static_cast<double>(thousandths) / 1000;
 }
 
 std::string statisticsText(const PassStatistics& statistics, const MachineConfiguration& configuration) {

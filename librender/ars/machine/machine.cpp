@@ -169,10 +169,12 @@ Result<PassStatistics> Machine::runTimed(const PixelSource& source) {
   const CycleLengths lengths = cycleLengths(configuration_.memory_design);
   const TilerPipelineTiming timing = timingOf(configuration_);
   std::vector<TilerPipeline> tilers;
+  tilers.reserve(static_cast<std::size_t>(configuration_.tilers));
   for (int tiler = 0; tiler < configuration_.tilers; ++tiler)
     tilers.emplace_back(tiler, source, map_, timing);
   std::vector<MemoryModule> modules(static_cast<std::size_t>(map_.memories()), module());
   std::vector<MemoryChannel> channels;
+  channels.reserve(modules.size());
   for (MemoryModule& module : modules) channels.emplace_back(module, lengths, configuration_.memory_fifo);
   TilerBank inlets(tilers);
   MemoryBank outlets(channels);

@@ -14,12 +14,12 @@ template <typename Accumulator>
 void sampleSpans(const TilerSetup& setup, Accumulator&& accumulator, SampledTriangle& result) {
   int start = 0, line_before = -1;
   std::int32_t samples = 0;  // since the last pixel
-  const auto passEmptyLines = [&](int line) {
+  const auto pass_empty_lines = [&](int line) {
     samples += (line - line_before - 1) * (setup.pixels - start + 1);
     line_before = line;
   };
   forEachSpan(setup, [&](int line, StepSpan span) {
-    passEmptyLines(line);
+    pass_empty_lines(line);
     samples += span.first - start;
     accumulator.beginLine(line);
     PixelPacket packet;
@@ -36,7 +36,7 @@ void sampleSpans(const TilerSetup& setup, Accumulator&& accumulator, SampledTria
     samples = span.last < setup.pixels ? 1 : 0;
     start = span.first;
   });
-  passEmptyLines(setup.lines + 1);
+  pass_empty_lines(setup.lines + 1);
   result.samples_after = samples;
 }
 
