@@ -142,14 +142,14 @@ std::vector<ProjectedTriangle> grazingTerrain() {
     }
   }
   const auto post = [&](int row_number, int column) {
-    return posts[static_cast<std::size_t>(row_number * (kCells + 1) + column)];
+    return posts[static_cast<std::size_t>(row_number) * (kCells + 1) + static_cast<std::size_t>(column)];
   };
-  const auto onScreen = [](const ProjectedVertex& v) {
+  const auto on_screen = [](const ProjectedVertex& v) {
     return v.i >= 0 && v.i <= 511 && v.j >= 0 && v.j <= 511;
   };
   std::vector<ProjectedTriangle> triangles;
   const auto add = [&](const ProjectedTriangle& triangle) {
-    if (std::all_of(triangle.begin(), triangle.end(), onScreen)) triangles.push_back(triangle);
+    if (std::all_of(triangle.begin(), triangle.end(), on_screen)) triangles.push_back(triangle);
   };
   for (int row_number = 0; row_number < kCells; ++row_number) {
     for (int column = 0; column < kCells; ++column) {
@@ -163,14 +163,16 @@ std::vector<ProjectedTriangle> grazingTerrain() {
 std::vector<ProjectedTriangle> randomMesh(int cells, int pitch) {
   RandomNumbers random(kSeed);
   const double reach = 0.24 * pitch;
-  std::vector<std::array<double, 2>> moved(static_cast<std::size_t>((cells + 1) * (cells + 1)));
+  const auto posts_a_line = static_cast<std::size_t>(cells) + 1;
+  std::vector<std::array<double, 2>> moved(posts_a_line * posts_a_line);
   for (std::array<double, 2>& by : moved) by = {random.uniform(-reach, reach), random.uniform(-reach, reach)};
   std::vector<ProjectedTriangle> mesh = latticeTriangles(cells, pitch);
   for (ProjectedTriangle& triangle : mesh) {
     for (ProjectedVertex& vertex : triangle) {
       const int line = static_cast<int>(vertex.i) / pitch, column = static_cast<int>(vertex.j) / pitch;
       if (line == 0 || line == cells || column == 0 || column == cells) continue;
-      const std::array<double, 2>& by = moved[static_cast<std::size_t>(line * (cells + 1) + column)];
+      const std::array<double, 2>& by =
+          moved[static_cast<std::size_t>(line) * posts_a_line + static_cast<std::size_t>(column)];
       vertex.i = line * pitch + by[0];
       vertex.j = column * pitch + by[1];
     }

@@ -142,7 +142,7 @@ TilingCounts placePixels(const TilerSetup& setup, const NumberProfile& numbers, 
   const auto with = [&](auto accumulator) {
     return forEachSpan(setup, [&](int line, StepSpan span) {
       accumulator.beginLine(line);
-      PixelPacket* out = place(static_cast<std::size_t>(span.last - span.first + 1));
+      PixelPacket* out = place(static_cast<std::size_t>(span.last - span.first) + 1);
       const auto i = static_cast<std::uint16_t>(setup.i_start + line * setup.i_step);
       for (int step = span.first; step <= span.last; ++step) {
         const PixelValues values = accumulator.at(step);

@@ -106,14 +106,14 @@ EncodedTriangle withPlanes(TriangleVariables variables, const ProjectedTriangle&
   const auto rounded = [&](const FloatFormat& format, double x) {
     return format.round(x, numbers.arithmetic);
   };
-  const auto atPixel = [&](const FloatFormat& format, const ScreenPlane& plane) {
+  const auto at_pixel = [&](const FloatFormat& format, const ScreenPlane& plane) {
     return rounded(format, plane.value + plane.per_i * to_i + plane.per_j * to_j);
   };
 
-  variables.depth = atPixel(numbers.depth_plane, planes.depth);
+  variables.depth = at_pixel(numbers.depth_plane, planes.depth);
   variables.depth_i = rounded(numbers.depth_plane, planes.depth.per_i);
   variables.depth_j = rounded(numbers.depth_plane, planes.depth.per_j);
-  variables.color = atPixel(numbers.color, planes.color);
+  variables.color = at_pixel(numbers.color, planes.color);
   variables.color_i = rounded(numbers.color, planes.color.per_i);
   variables.color_j = rounded(numbers.color, planes.color.per_j);
 
@@ -122,7 +122,7 @@ EncodedTriangle withPlanes(TriangleVariables variables, const ProjectedTriangle&
   return {.variables = variables,
           .supplement = {.least_depth = rounded(numbers.depth_plane, least_depth),
                          .greatest_depth = rounded(numbers.depth_plane, greatest_depth),
-                         .color_over_depth = atPixel(numbers.depth_plane, planes.color_over_depth),
+                         .color_over_depth = at_pixel(numbers.depth_plane, planes.color_over_depth),
                          .color_over_depth_i = rounded(numbers.depth_plane, planes.color_over_depth.per_i),
                          .color_over_depth_j = rounded(numbers.depth_plane, planes.color_over_depth.per_j)}};
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'D', 'Z', 'T', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t kHeaderBytes = 64, kChecksumBytes = 8, kBatchBytes = 16;
-constexpr std::size_t kTriangleBytes = 4 * kTriangleWordCount, kSourceBytes = 3 * 4 * sizeof(double);
+constexpr std::size_t kTriangleBytes = sizeof(TriangleWords), kSourceBytes = sizeof(double) * 4 * 3;
 constexpr std::uint16_t kSourcesFeature = 1;
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 32;
 
