@@ -446,7 +446,7 @@ AreaHeader readArea(const Json& json, std::string& fault) {
   Members nodes = members.object("nodes");
   area.node_count = static_cast<std::uint32_t>(nodes.integer("count", 1, UINT32_MAX));
   area.nodes_per_page = static_cast<std::uint32_t>(nodes.integer("per_page", 1, UINT32_MAX));
-  if (area.nodes_per_page != kNodesPerPage && area.nodes_per_page != kNodesPerPlainPage)
+  if (area.nodes_per_page > kNodesPerPage && area.nodes_per_page != kNodesPerPlainPage)
     nodes.fail("per_page", "is not a size that pages have");
   const Json& grids = members.array("grids", 1, 1 << 16);
   for (std::size_t i = 0; i < grids.size(); ++i)

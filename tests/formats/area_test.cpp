@@ -193,7 +193,7 @@ TEST(Area, pages_of_nodes_are_packed_or_those_of_the_first_databases) {
   const std::string text = serializeArea(area);
   EXPECT_EQ(text.find("packed_nodes"), std::string::npos);
   EXPECT_EQ(parseArea(text, "a").value(), area);
-  for (const char* const size : {"0", "1", "32", "4294967295"}) {
+  for (const char* const size : {"0", "17", "32", "63", "65", "4294967295"}) {
     const std::string per_page = std::string("\"per_page\": ") + size;
     EXPECT_EQ(parseArea(withReplaced("\"per_page\": 16", per_page), "a").error().code, IssueCode::kManField);
   }

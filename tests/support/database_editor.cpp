@@ -27,7 +27,7 @@ DatabaseEditor::DatabaseEditor(MemoryFileSystem& files, const std::string& path)
   const FileBytes& nodes = files.bytes(nodePath());
   for (std::uint32_t page = 0; page < blockCount(nodes); ++page) {
     const auto decoded =
-        valueOrThrow(decodeNodePage(payloadOf(nodes, page), page * kNodesPerPage + 1, nodePath()));
+        valueOrThrow(decodeNodePage(payloadOf(nodes, page), page * area.nodes_per_page + 1, nodePath()));
     records.insert(records.end(), decoded.begin(), decoded.end());
   }
   const FileBytes& terrain = files.bytes(terrainPath());
@@ -77,9 +77,9 @@ void DatabaseEditor::refreshReferences() {
 
 void DatabaseEditor::save() {
   std::vector<std::vector<std::byte>> pages;
-  for (std::size_t first = 0; first < records.size(); first += kNodesPerPage) {
+  for (std::size_t first = 0; first < records.size(); first += area.nodes_per_page) {
     pages.push_back(encodeNodePage(
-        std::span(records).subspan(first, std::min<std::size_t>(kNodesPerPage, records.size() - first)),
+        std::span(records).subspan(first, std::min<std::size_t>(area.nodes_per_page, records.size() - first)),
         static_cast<std::uint32_t>(first + 1)));
   }
   files_.setBytes(nodePath(), makeContainer(ContentKind::kNodes, BlockType::kPackedNodePage, pages));

@@ -26,7 +26,7 @@ class Golden : public testing::TestWithParam<const char*> {
   std::string path() const { return std::string(DELTAZ_GOLDEN "/") + GetParam(); }
 };
 INSTANTIATE_TEST_SUITE_P(Versions, Golden, testing::Values("version_1.dz", "version_2.dz"),
-                         [](const auto& info) { return std::string(info.param).substr(0, 9); });
+                         [](const auto& version) { return std::string(version.param).substr(0, 9); });
 
 TEST_P(Golden, reads_post_for_post) {
   Result<Database> database = Database::open(localFileSystem(), path());

@@ -86,11 +86,11 @@ TEST(SeveralGrids, all_of_them_come_back_and_the_area_is_sound) {
   const AreaHeader& area = database.value().area();
   EXPECT_EQ(area.west, -80);
   EXPECT_EQ(area.south, 43);
-  // The first page holds every grid's coarsest nodes.
+  // Every grid's coarsest nodes come first.
   for (std::uint32_t number = 5; number <= 8; ++number)
     EXPECT_EQ(database.value().record(number).value().type, NodeType::kTerrain);
   std::vector<bool> seen(3, false);
-  for (std::uint32_t number = 1; number <= std::min(kNodesPerPage, area.node_count); ++number) {
+  for (std::uint32_t number = 1; number <= std::min(16u, area.node_count); ++number) {
     const NodeRecord record = database.value().record(number).value();
     if (record.type == NodeType::kTerrain) seen[record.grid] = true;
   }
