@@ -1,10 +1,18 @@
+#include "librender/ars/engine/ars_engine.h"
 #include "librender/fast_engine.h"
 #include "librender/reference/reference_engine.h"
 
 namespace deltaz {
 
 std::unique_ptr<Engine> makeEngine(EngineKind kind) {
-  if (kind == EngineKind::kReference) return std::make_unique<ReferenceEngine>();
+  switch (kind) {
+    case EngineKind::kReference:
+      return std::make_unique<ReferenceEngine>();
+    case EngineKind::kArs:
+      return std::make_unique<ArsEngine>();
+    case EngineKind::kFast:
+      break;
+  }
   return std::make_unique<FastEngine>();
 }
 

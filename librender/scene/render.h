@@ -1,6 +1,6 @@
 // The one interface of the engines: a database and a view in, a picture and its statistics out.
-// Three engines are planned behind it; each validates the others. `fast` is the product, `reference` the
-// judge (double precision, every full-resolution triangle).
+// Three engines stand behind it; each validates the others. `fast` is the product, `reference` the judge
+// (double precision, every full-resolution triangle), `ars` the model of a machine of 1983.
 //
 // Guarantees: the same picture for any thread count. Errors: whatever reading the database reports; kUsage
 // for views that make no sense. Thread-safety: several renders of one database may run at once.
@@ -16,12 +16,17 @@
 #include "formats/error.h"
 #include "libdb/access/database.h"
 #include "librender/antialias/filter.h"
+#include "librender/ars/engine/ars_options.h"
 #include "librender/scene/camera.h"
 #include "librender/scene/pose.h"
 #include "librender/scene/report_schedule.h"
 #include "librender/scene/transform_kind.h"
 
 namespace deltaz {
+
+namespace ars {
+struct Frame;
+}
 
 struct Sun {
   double azimuth = 225;   // degrees clockwise from north, seen from the centre of the area
@@ -46,6 +51,7 @@ struct RenderOptions {
   // Antialiasing. Depth, surface and triangle of a picture are those of the face that the sample nearest to
   // the pixel's centre shows; depth is that of the face's plane at the centre, within the face's own range.
   Sampling sampling;
+  ArsOptions ars;  // of that engine alone
   // >= 0: draw this level, of terrain and of models, whatever the tolerance (tests and benches).
   int fixed_level = -1;
   int threads = 0;  // 0: as many as the machine has
@@ -122,6 +128,7 @@ struct FrameStatistics {
   struct Milliseconds {
     double schedule = 0, read = 0, objects = 0, raster = 0, resolve = 0, total = 0;
   } milliseconds;
+  std::shared_ptr<const ars::Frame> ars;  // what the machine did (ars/engine/ars_frame.h), of that engine
 };
 
 class Engine {
@@ -131,7 +138,7 @@ class Engine {
                                  FrameStatistics& statistics) const = 0;
 };
 
-enum class EngineKind : std::uint8_t { kFast, kReference };
+enum class EngineKind : std::uint8_t { kFast, kReference, kArs };
 std::unique_ptr<Engine> makeEngine(EngineKind kind);
 
 }  // namespace deltaz

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "librender/ars/engine/ars_engine.h"
 #include "librender/scene/conservation.h"
 #include "tools/common/output_file.h"
 #include "tools/common/picture_file.h"
@@ -78,8 +79,14 @@ Result<int> run(const ViewOptions& options) {
   if (!options.depth_path.empty()) {
     DELTAZ_TRY_ASSIGN(depth, encodeDepthTiff(frame.picture, depthDescription(database, view.render.camera)));
   }
+  std::vector<std::byte> stream;
+  if (!view.record_path.empty()) {
+    DELTAZ_TRY_ASSIGN(const ars::TriangleStream captured, captureStream(database, view.render));
+    DELTAZ_TRY_ASSIGN(stream, ars::encodeTriangleStream(captured));
+  }
   // The picture comes last: where it stands, everything asked for does.
   const bool overwrite = options.common.overwrite;
+  if (!view.record_path.empty()) DELTAZ_TRY(writeOutput(view.record_path, stream, overwrite));
   if (!options.depth_path.empty()) DELTAZ_TRY(writeOutput(options.depth_path, depth, overwrite));
   if (!options.statistics_path.empty())
     DELTAZ_TRY(writeOutput(options.statistics_path, jsonText(statistics), overwrite));

@@ -1,6 +1,7 @@
 #include "tools/dbview/options.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <utility>
 
@@ -29,13 +30,14 @@ Status checkOutputs(const ViewOptions& options) {
     return !a.empty() && !b.empty() &&
            joinPath(parentPath(a), baseName(a)) == joinPath(parentPath(b), baseName(b));
   };
-  for (const auto& [a, b] :
-       {std::pair(options.output, options.depth_path), std::pair(options.output, options.statistics_path),
-        std::pair(options.depth_path, options.statistics_path)}) {
-    if (same(a, b))
-      return usageError(a, "two results would go into one file", {}, "Give each a name of its own");
+  const std::array paths = {options.output, options.depth_path, options.statistics_path, options.record};
+  for (std::size_t a = 0; a < paths.size(); ++a) {
+    for (std::size_t b = a + 1; b < paths.size(); ++b) {
+      if (same(paths[a], paths[b]))
+        return usageError(paths[a], "two results would go into one file", {}, "Give each a name of its own");
+    }
   }
-  for (const std::string& path : {options.output, options.depth_path, options.statistics_path}) {
+  for (const std::string& path : paths) {
     if (!path.empty()) DELTAZ_TRY(checkOutput(path, options.common.overwrite));
   }
   return Success{};
@@ -70,9 +72,17 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
       ->check(CLI::IsMember({"exact", "local", "delta", "matrix"}))
       ->type_name("TRANSFORM");
   app.add_option("--engine", options.engine,
-                 "fast, or reference: double precision, every triangle (default: fast)")
-      ->check(CLI::IsMember({"fast", "reference"}))
+                 "fast; reference: double precision, every triangle; or ars: the machine of 1983, with its "
+                 "clocks (default: fast)")
+      ->check(CLI::IsMember({"fast", "reference", "ars"}))
       ->type_name("ENGINE");
+  app.add_option("--ars", options.ars,
+                 "How the machine of --engine ars is built, e.g. tilers=2,mode=sequential; see dbview(1)")
+      ->type_name("KEY=VALUE,...");
+  addPathOption(
+      app, "--record", options.record,
+      "With --engine ars: write the triangles the machine is sent, to be played by dbview ars-sweep")
+      ->type_name("FILE.dzt");
   app.add_option(
          "--simd", options.simd,
          "Widest vector instructions to use: auto, portable, sse4, avx2 or avx512. The picture is the same "
@@ -103,7 +113,9 @@ Result<View> parseView(const ViewOptions& options) {
   const LodScheme lod = options.lod == "report" ? LodScheme::kReport : LodScheme::kError;
   DELTAZ_TRY_ASSIGN(const std::int64_t repeat, parseInteger(options.repeat, "--repeat", 1, kLargestRepeat));
   view.repeat = static_cast<int>(repeat);
-  view.engine = options.engine == "reference" ? EngineKind::kReference : EngineKind::kFast;
+  view.engine = options.engine == "reference" ? EngineKind::kReference
+                : options.engine == "ars"     ? EngineKind::kArs
+                                              : EngineKind::kFast;
   if (view.engine == EngineKind::kReference && lod == LodScheme::kReport) {
     return usageError("--lod", "the reference engine draws every triangle, there are no levels to choose", {},
                       "Leave out --lod report, or --engine reference");
@@ -119,6 +131,15 @@ Result<View> parseView(const ViewOptions& options) {
     return usageError("--simd", fmt::format("this processor has no {}", options.simd), {},
                       "Leave out --simd");
   }
+  if (view.engine != EngineKind::kArs) {
+    for (const auto& [name, value] :
+         {std::pair("--ars", options.ars), std::pair("--record", options.record)}) {
+      if (!value.empty())
+        return usageError(name, "only the machine of 1983 has this", {},
+                          "Give --engine ars, or leave it out");
+    }
+  }
+  DELTAZ_TRY_ASSIGN(const ArsOptions ars, parseArsOptions(options.ars));
   DELTAZ_TRY(checkOutputs(options));
   DELTAZ_TRY_ASSIGN(RenderOptions render, parseScene(options.scene, options.common));
   render.tolerance = tolerance;
@@ -128,12 +149,22 @@ Result<View> parseView(const ViewOptions& options) {
   DELTAZ_TRY(checkSampling(render));
   render.lod = lod;
   render.transform = *transform;
+  render.ars = ars;
+  view.record_path = options.record;
   view.render = std::move(render);
   return view;
 }
 
 const char* engineName(EngineKind kind) {
-  return kind == EngineKind::kReference ? "reference" : "fast";
+  switch (kind) {
+    case EngineKind::kReference:
+      return "reference";
+    case EngineKind::kArs:
+      return "ars";
+    case EngineKind::kFast:
+      break;
+  }
+  return "fast";
 }
 
 const char* lodName(LodScheme lod) {

@@ -20,6 +20,8 @@ struct ViewOptions {
   std::string lod = "error";
   std::string transform = "exact";
   std::string engine = "fast";
+  std::string ars;     // settings of the machine
+  std::string record;  // where to write the stream of triangles it draws
   std::string simd = "auto";
   std::string statistics_path, depth_path;
   std::string repeat = "1";
@@ -33,6 +35,7 @@ struct View {
   CameraRequest camera;
   EngineKind engine = EngineKind::kFast;
   int repeat = 1;
+  std::string record_path;  // empty: not asked for
 };
 
 // Everything of the options that can be judged without a database; the file of poses is read, and --simd is

@@ -1,0 +1,322 @@
+#include "librender/ars/engine/ars_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <tbb/parallel_for.h>
+
+#include "librender/ars/antialiaser/shift_add_filter.h"
+#include "librender/ars/engine/ars_frame.h"
+#include "librender/ars/engine/frame_stream.h"
+#include "librender/ars/machine/machine.h"
+#include "librender/ars/machine/triangle_source.h"
+#include "librender/ars/tiler/span_tiler.h"
+#include "librender/scene/arena.h"
+#include "librender/scene/stopwatch.h"
+
+namespace deltaz {
+namespace {
+
+using ars::kScreenLines;
+using ars::kScreenPixels;
+
+Status checkMachineCan(const RenderOptions& options) {
+  if (!options.sampling.isPlain()) {
+    return usageError("--samples", "the machine takes one sample a pixel, and has an antialiaser of its own",
+                      {}, "Leave out --samples and --filter, and give --ars antialiaser=report");
+  }
+  if (options.lod != LodScheme::kError)
+    return usageError("--lod", "the machine draws levels of detail by error", {}, "Leave out --lod report");
+  if (options.transform != TransformKind::kExact)
+    return usageError("--transform", "the machine is handed exact positions", {}, "Leave out --transform");
+  DELTAZ_TRY(ars::validate(options.ars.machine));
+  return ars::checkNumberProfile(options.ars.tiler.numbers);
+}
+
+// Where the samples lie that pixels are made of.
+struct SampleRaster {
+  std::optional<ars::ShiftAddKernel> kernel;
+  int ratio = 1;
+  double first_centre = 0;  // of pixel 0, in samples
+
+  double centre(int pixel) const { return ratio * pixel + first_centre; }
+  int nearest(int pixel, int samples) const {
+    return std::clamp(static_cast<int>(std::lround(centre(pixel))), 0, samples - 1);
+  }
+};
+
+Result<SampleRaster> sampleRaster(const ArsOptions& options) {
+  SampleRaster raster;
+  if (options.antialiaser.empty()) return raster;
+  raster.kernel = ars::shiftAddKernelNamed(options.antialiaser);
+  if (!raster.kernel)
+    return usageError("--ars antialiaser", fmt::format("there is no kernel '{}'", options.antialiaser));
+  raster.ratio = raster.kernel->ratio;
+  raster.first_centre = raster.kernel->firstSample(0) + (raster.kernel->taps() - 1) / 2.0;
+  return raster;
+}
+
+// The view through the samples, and what the scene is in it.
+struct SampledScene {
+  SampleRaster raster;
+  Environment environment;
+  ars::SceneTriangles triangles;
+};
+
+Result<SampledScene> sampledScene(const Database& database, const RenderOptions& asked,
+                                  FrameStatistics& statistics) {
+  DELTAZ_TRY(checkMachineCan(asked));
+  DELTAZ_TRY_ASSIGN(const SampleRaster raster, sampleRaster(asked.ars));
+  RenderOptions options = asked;
+  options.camera.width *= raster.ratio;
+  options.camera.height *= raster.ratio;
+  options.tolerance *= raster.ratio;
+  DELTAZ_TRY_ASSIGN(Environment environment, makeEnvironment(database, options));
+  ViewTransform& view = environment.view;
+  view.centre_j = raster.first_centre + raster.ratio * (asked.camera.width - 1) / 2.0;
+  view.centre_i = raster.first_centre + raster.ratio * (asked.camera.height - 1) / 2.0;
+  DELTAZ_TRY_ASSIGN(ars::SceneTriangles triangles,
+                    ars::sceneTriangles(database, environment, options, statistics));
+  statistics.projected_error /= raster.ratio;
+  return SampledScene{raster, std::move(environment), std::move(triangles)};
+}
+
+// One word of a depth/frame memory.
+struct DepthWord {
+  std::uint32_t depth = 0;
+  bool written = false;
+};
+
+// What the memories of all sub-images hold, put together.
+struct SamplePicture {
+  int width = 0, height = 0;
+  std::vector<std::vector<std::uint8_t>> color;  // of each pass
+  std::vector<DepthWord> depth;
+  std::vector<std::uint32_t> owner;  // triangle of the scene
+};
+
+void copySubImage(const ars::Machine& machine, const ars::SubImageOrigin& origin, SamplePicture& picture) {
+  for (int i = 0; i < std::min(kScreenLines, picture.height - origin.i); ++i) {
+    for (int j = 0; j < std::min(kScreenPixels, picture.width - origin.j); ++j) {
+      picture.depth[static_cast<std::size_t>(origin.i + i) * static_cast<std::size_t>(picture.width) +
+                    static_cast<std::size_t>(origin.j + j)] = {machine.depth(i, j), machine.written(i, j)};
+    }
+  }
+}
+
+void copyColors(const std::vector<std::uint8_t>& screen, const ars::SubImageOrigin& origin,
+                std::vector<std::uint8_t>& color, int width, int height) {
+  const int pixels = std::min(kScreenPixels, width - origin.j);
+  for (int i = 0; i < std::min(kScreenLines, height - origin.i); ++i) {
+    const auto from = screen.begin() + static_cast<std::ptrdiff_t>(i) * kScreenPixels;
+    std::copy(from, from + pixels,
+              color.begin() + static_cast<std::ptrdiff_t>(origin.i + i) * width + origin.j);
+  }
+}
+
+// What a machine draws of one sub-image in one colour.
+Result<ars::FrameRun> drawRun(const ars::FrameStream& frame, const ArsOptions& options,
+                              std::uint32_t sub_image, int pass, SamplePicture& picture) {
+  const ars::TilerConfiguration tiler{ars::frameNumbers(options), options.tiler.corrections};
+  DELTAZ_TRY_ASSIGN(const ars::TriangleSource source,
+                    ars::triangleSource(frame.stream, sub_image, pass, tiler));
+  DELTAZ_TRY_ASSIGN(ars::Machine machine, ars::Machine::make(options.machine));
+  ars::FrameRun run;
+  run.sub_image = sub_image;
+  run.pass = pass;
+  run.triangles = source.triangles();
+  if (options.timed) {
+    DELTAZ_TRY_ASSIGN(run.statistics, machine.runTimed(source));
+    run.memory = run.statistics.memoryCounts();
+  } else {
+    run.memory = machine.runFunctional(source);
+  }
+  const ars::SubImageOrigin origin = ars::subImageOrigin(sub_image, frame.stream.picture_width);
+  if (pass == 0) copySubImage(machine, origin, picture);
+  copyColors(machine.readPicture(), origin, picture.color[static_cast<std::size_t>(pass)], picture.width,
+             picture.height);
+  return run;
+}
+
+// Whose pixel is seen: the machine's rule, nearest first come, on triangles with names. Also which triangles
+// have pixels at all, and how many.
+struct Owners {
+  std::vector<std::uint8_t> tiled;  // by triangle of the scene
+  std::uint64_t pixels = 0;
+};
+
+Result<Owners> findOwners(const ars::FrameStream& frame, const ArsOptions& options, std::size_t triangles,
+                          SamplePicture& picture) {
+  const ars::TilerConfiguration tiler{ars::frameNumbers(options), options.tiler.corrections};
+  Owners owners;
+  owners.tiled.assign(triangles, 0);
+  std::vector<DepthWord> seen(picture.depth.size());
+  std::vector<ars::PixelPacket> pixels;
+  const auto sub_images =
+      static_cast<std::uint32_t>(ars::subImageCount(frame.stream.picture_width, frame.stream.picture_height));
+  for (std::uint32_t n = 0; n < sub_images; ++n) {
+    DELTAZ_TRY_ASSIGN(const ars::TriangleSource source, ars::triangleSource(frame.stream, n, 0, tiler));
+    std::vector<std::uint32_t> names;
+    for (std::size_t b = 0; b < frame.stream.batches.size(); ++b) {
+      if (frame.stream.batches[b].sub_image == n && frame.stream.batches[b].pass == 0)
+        names.insert(names.end(), frame.owner[b].begin(), frame.owner[b].end());
+    }
+    const ars::SubImageOrigin origin = ars::subImageOrigin(n, frame.stream.picture_width);
+    for (std::size_t t = 0; t < names.size(); ++t) {
+      if (names[t] == ars::kOfBackground) continue;
+      pixels.clear();
+      source.pixels(t, pixels);
+      owners.pixels += pixels.size();
+      if (!pixels.empty()) owners.tiled[names[t]] = 1;
+      for (const ars::PixelPacket& pixel : pixels) {
+        // Tolerances reach beyond a picture that does not fill the screen.
+        const int i = origin.i + pixel.i, j = origin.j + pixel.j;
+        if (i >= picture.height || j >= picture.width) continue;
+        const std::size_t at = static_cast<std::size_t>(i) * static_cast<std::size_t>(picture.width) +
+                               static_cast<std::size_t>(j);
+        if (seen[at].written && pixel.depth <= seen[at].depth) continue;
+        seen[at] = {pixel.depth, true};
+        picture.owner[at] = names[t];
+      }
+    }
+  }
+  return owners;
+}
+
+// The picture that is shown of the samples.
+Picture shownPicture(const SampledScene& scene, const RenderOptions& asked, const ars::DepthFormat& depths,
+                     const SamplePicture& samples) {
+  Picture picture = makePicture(asked);
+  std::vector<std::vector<std::uint8_t>> colors;
+  for (const std::vector<std::uint8_t>& color : samples.color) {
+    colors.push_back(scene.raster.kernel
+                         ? ars::filtered(*scene.raster.kernel, color, samples.width, samples.height)
+                         : color);
+  }
+  for (int i = 0; i < picture.height; ++i) {
+    for (int j = 0; j < picture.width; ++j) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(i) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(j);
+      for (std::size_t c = 0; c < ars::kColors; ++c)
+        picture.rgb[3 * pixel + c] = colors[colors.size() == 1 ? 0 : c][pixel];
+      const std::size_t sample = static_cast<std::size_t>(scene.raster.nearest(i, samples.height)) *
+                                     static_cast<std::size_t>(samples.width) +
+                                 static_cast<std::size_t>(scene.raster.nearest(j, samples.width));
+      if (samples.depth[sample].written) {
+        const double inverse_u = depths.decode(samples.depth[sample].depth);
+        picture.depth[pixel] =
+            inverse_u > 0 ? static_cast<float>(1 / inverse_u) : std::numeric_limits<float>::infinity();
+        const std::uint32_t owner = samples.owner[sample];
+        picture.surface[pixel] = owner < scene.triangles.terrain ? Surface::kTerrain : Surface::kModel;
+        if (asked.keep_triangle_ids) picture.triangle[pixel] = scene.triangles.identity[owner];
+        continue;
+      }
+      const double u = scene.environment.sea.depth(
+          scene.environment.view.ray(scene.raster.centre(j), scene.raster.centre(i)));
+      const bool sea = u < std::numeric_limits<double>::infinity();
+      picture.surface[pixel] = sea ? Surface::kSea : Surface::kSky;
+      picture.depth[pixel] = static_cast<float>(u);
+    }
+  }
+  return picture;
+}
+
+void countTriangles(const ars::FrameStream& frame, const Owners& owners, FrameStatistics::Triangles& counts) {
+  for (std::size_t t = 0; t < owners.tiled.size(); ++t) {
+    ++(owners.tiled[t] != 0 ? counts.drawn : frame.on_screen[t] != 0 ? counts.no_sample : counts.clipped);
+  }
+}
+
+Result<Picture> renderInArena(const Database& database, const RenderOptions& asked,
+                              FrameStatistics& statistics) {
+  Stopwatch watch;
+  const std::uint64_t bytes_before = database.bytesRead();
+  DELTAZ_TRY_ASSIGN(const SampledScene scene, sampledScene(database, asked, statistics));
+  statistics.bytes_read = database.bytesRead() - bytes_before;
+  watch.lap();
+  const ArsOptions& options = asked.ars;
+  const ars::FrameStream frame = ars::makeFrameStream(scene.triangles, scene.environment, options);
+
+  SamplePicture samples;
+  samples.width = scene.environment.view.width;
+  samples.height = scene.environment.view.height;
+  const std::size_t count =
+      static_cast<std::size_t>(samples.width) * static_cast<std::size_t>(samples.height);
+  samples.color.assign(static_cast<std::size_t>(options.passes), std::vector<std::uint8_t>(count));
+  samples.depth.resize(count);
+  samples.owner.assign(count, ars::kOfBackground);
+  DELTAZ_TRY_ASSIGN(const Owners owners,
+                    findOwners(frame, options, scene.triangles.triangles.size(), samples));
+  statistics.milliseconds.objects += watch.lap();
+
+  auto report = std::make_shared<ars::Frame>();
+  report->picture_width = samples.width;
+  report->picture_height = samples.height;
+  report->sub_images = ars::subImageCount(samples.width, samples.height);
+  report->passes = options.passes;
+  report->timed = options.timed;
+  report->settings = describeArsOptions(options);
+  report->pretiler = frame.counts;
+  for (const ars::TriangleBatch& batch : frame.stream.batches) {
+    if (batch.pass == 0 && batch.phase == ars::DrawPhase::kBackground)
+      report->background += batch.triangles.size();
+  }
+  const auto runs = static_cast<std::size_t>(report->sub_images * options.passes);
+  std::vector<std::optional<Result<ars::FrameRun>>> made(runs);
+  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t n) {
+    const auto passes = static_cast<std::size_t>(options.passes);
+    made[n].emplace(drawRun(frame, options, static_cast<std::uint32_t>(n / passes),
+                            static_cast<int>(n % passes), samples));
+  });
+  for (std::optional<Result<ars::FrameRun>>& run : made) {
+    if (!run->ok()) return run->error();
+    report->runs.push_back(std::move(*run).value());
+    report->drawing += report->runs.back().statistics.duration;
+    report->reading += report->runs.back().statistics.reading;
+  }
+  statistics.milliseconds.raster = watch.lap();
+
+  Picture picture = shownPicture(scene, asked, ars::frameNumbers(options).depth, samples);
+  countTriangles(frame, owners, statistics.triangles);
+  statistics.samples.tested = owners.pixels;
+  statistics.samples.shaded = static_cast<std::uint64_t>(std::count_if(
+      samples.owner.begin(), samples.owner.end(), [](std::uint32_t n) { return n != ars::kOfBackground; }));
+  for (const ars::FrameRun& run : report->runs) {
+    if (run.pass != 0) continue;
+    for (const ars::MemoryCycle cycle : {ars::MemoryCycle::kInitialize, ars::MemoryCycle::kLookAheadWrite,
+                                         ars::MemoryCycle::kReadCompareWrite})
+      statistics.samples.written +=
+          static_cast<std::uint64_t>(run.memory.cycles[static_cast<std::size_t>(cycle)]);
+  }
+  if (statistics.samples.shaded > 0)
+    statistics.depth_complexity =
+        static_cast<double>(statistics.samples.tested) / static_cast<double>(statistics.samples.shaded);
+  statistics.ars = std::move(report);
+  statistics.milliseconds.resolve = watch.lap();
+  statistics.milliseconds.total = watch.total();
+  return picture;
+}
+
+}  // namespace
+
+Result<Picture> ArsEngine::render(const Database& database, const RenderOptions& options,
+                                  FrameStatistics& statistics) const {
+  statistics = {};
+  return drawOnThreads(options.threads, [&] { return renderInArena(database, options, statistics); });
+}
+
+Result<ars::TriangleStream> captureStream(const Database& database, const RenderOptions& options) {
+  ars::TriangleStream stream;
+  DELTAZ_TRY(drawOnThreads(options.threads, [&]() -> Result<Picture> {
+    FrameStatistics statistics;
+    DELTAZ_TRY_ASSIGN(const SampledScene scene, sampledScene(database, options, statistics));
+    stream = ars::makeFrameStream(scene.triangles, scene.environment, options.ars).stream;
+    return Picture{};
+  }));
+  return stream;
+}
+
+}  // namespace deltaz
