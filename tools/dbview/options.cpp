@@ -82,7 +82,7 @@ void addViewOptions(CLI::App& app, ViewOptions& options) {
   addPathOption(
       app, "--record", options.record,
       "With --engine ars: write the triangles the machine is sent, to be played by dbview ars-sweep")
-      ->type_name("FILE.dzt");
+      ->type_name("FILE.ars");
   app.add_option(
          "--simd", options.simd,
          "Widest vector instructions to use: auto, portable, sse4, avx2 or avx512. The picture is the same "

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "librender/ars/engine/vertex_color.h"
+#include "librender/ars/words/pixel_packet.h"
 #include "librender/objects/border_stitcher.h"
 #include "librender/objects/model_object_processor.h"
 #include "librender/objects/part_meshes.h"
@@ -198,16 +199,15 @@ class Background {
  public:
   using Color = std::array<double, kColors>;
 
-  Background(const Environment& environment, int first_i, int first_j, int lines, int pixels)
+  Background(const Environment& environment, int first_i, int first_j)
       : environment_(environment),
         first_i_(first_i),
         first_j_(first_j),
-        pixels_(pixels),
-        known_(static_cast<std::size_t>(lines) * static_cast<std::size_t>(pixels)) {}
+        known_(kScreenLines * kScreenPixels) {}
 
   const Color& at(int i, int j) {
     std::optional<Color>& color =
-        known_[static_cast<std::size_t>(i) * static_cast<std::size_t>(pixels_) + static_cast<std::size_t>(j)];
+        known_[static_cast<std::size_t>(i) * kScreenPixels + static_cast<std::size_t>(j)];
     if (!color) color = seen(i, j);
     return *color;
   }
@@ -222,13 +222,19 @@ class Background {
   }
 
   const Environment& environment_;
-  int first_i_, first_j_, pixels_;
+  int first_i_, first_j_;
   std::vector<std::optional<Color>> known_;
 };
 
-// Pixels first and last of both axes.
-struct Rectangle {
-  int first_i, first_j, last_i, last_j;
+// A square of pixels, and the two triangles that have all of them, each one once: background is written in
+// whatever order the tilers come, so no two triangles of it may have a pixel in common.
+//
+//   a a a a      corners of a: first pixel, last of the first line, last of the first column
+//   a a a b      corners of b: last of the second line, last pixel, last of the second column
+//   a a b b
+//   a b b b
+struct Square {
+  int i, j, side;
 };
 
 class BackgroundMaker {
@@ -236,19 +242,17 @@ class BackgroundMaker {
   BackgroundMaker(Background& background, std::vector<BackgroundTriangle>& out)
       : background_(background), out_(out) {}
 
-  void add(const Rectangle& r) {
-    const int height = r.last_i - r.first_i, width = r.last_j - r.first_j;
-    if ((height > kSmallestBackground || width > kSmallestBackground) && !isLinear(r)) {
-      const int middle_i = height > kSmallestBackground ? (r.first_i + r.last_i) / 2 : r.last_i;
-      const int middle_j = width > kSmallestBackground ? (r.first_j + r.last_j) / 2 : r.last_j;
-      add({r.first_i, r.first_j, middle_i, middle_j});
-      if (middle_j < r.last_j) add({r.first_i, middle_j, middle_i, r.last_j});
-      if (middle_i < r.last_i) add({middle_i, r.first_j, r.last_i, middle_j});
-      if (middle_i < r.last_i && middle_j < r.last_j) add({middle_i, middle_j, r.last_i, r.last_j});
+  void add(const Square& square) {
+    if (square.side > kSmallestBackground && !isLinear(square)) {
+      const int half = square.side / 2;
+      for (const int di : {0, half}) {
+        for (const int dj : {0, half}) add({square.i + di, square.j + dj, half});
+      }
       return;
     }
-    addTriangle({{{r.first_i, r.first_j}, {r.first_i, r.last_j}, {r.last_i, r.first_j}}});
-    addTriangle({{{r.first_i, r.last_j}, {r.last_i, r.last_j}, {r.last_i, r.first_j}}});
+    const int last_i = square.i + square.side - 1, last_j = square.j + square.side - 1;
+    addTriangle({{{square.i, square.j}, {square.i, last_j}, {last_i, square.j}}});
+    addTriangle({{{square.i + 1, last_j}, {last_i, last_j}, {last_i, square.j + 1}}});
   }
 
  private:
@@ -263,22 +267,22 @@ class BackgroundMaker {
     out_.push_back(triangle);
   }
 
-  // Whether the two triangles of the rectangle show what they stand for, looked at in a lattice of places.
-  bool isLinear(const Rectangle& r) {
+  // Whether the two triangles of the square show what they stand for, looked at in a lattice of places.
+  bool isLinear(const Square& square) {
     constexpr int kSteps = 8;
-    const Background::Color nw = background_.at(r.first_i, r.first_j),
-                            ne = background_.at(r.first_i, r.last_j),
-                            sw = background_.at(r.last_i, r.first_j), se = background_.at(r.last_i, r.last_j);
-    const int height = r.last_i - r.first_i, width = r.last_j - r.first_j;
+    const int last = square.side - 1;
+    const auto corner = [&](int di, int dj) { return background_.at(square.i + di, square.j + dj); };
+    const Background::Color nw = corner(0, 0), ne = corner(0, last), sw = corner(last, 0),
+                            se = corner(last, last);
     for (int down = 0; down <= kSteps; ++down) {
       for (int across = 0; across <= kSteps; ++across) {
-        const int i = r.first_i + height * down / kSteps, j = r.first_j + width * across / kSteps;
-        const double x = width > 0 ? static_cast<double>(j - r.first_j) / width : 0;
-        const double y = height > 0 ? static_cast<double>(i - r.first_i) / height : 0;
-        const Background::Color& is = background_.at(i, j);
+        const int di = last * down / kSteps, dj = last * across / kSteps;
+        const double x = static_cast<double>(dj) / last, y = static_cast<double>(di) / last;
+        const Background::Color is = corner(di, dj);
         for (std::size_t c = 0; c < kColors; ++c) {
-          const double shown = x + y <= 1 ? nw[c] + (ne[c] - nw[c]) * x + (sw[c] - nw[c]) * y
-                                          : se[c] + (sw[c] - se[c]) * (1 - x) + (ne[c] - se[c]) * (1 - y);
+          const double shown = di + dj <= last
+                                   ? nw[c] + (ne[c] - nw[c]) * x + (sw[c] - nw[c]) * y
+                                   : se[c] + (sw[c] - se[c]) * (1 - x) + (ne[c] - se[c]) * (1 - y);
           if (std::abs(shown - is[c]) > kBackgroundStep) return false;
         }
       }
@@ -294,9 +298,12 @@ class BackgroundMaker {
 
 std::vector<BackgroundTriangle> backgroundTriangles(const Environment& environment, int first_i, int first_j,
                                                     int lines, int pixels) {
-  Background background(environment, first_i, first_j, lines, pixels);
+  Background background(environment, first_i, first_j);
   std::vector<BackgroundTriangle> triangles;
-  BackgroundMaker(background, triangles).add({0, 0, lines - 1, pixels - 1});
+  BackgroundMaker maker(background, triangles);
+  for (int i = 0; i < lines; i += kLargestBackground) {
+    for (int j = 0; j < pixels; j += kLargestBackground) maker.add({i, j, kLargestBackground});
+  }
   return triangles;
 }
 

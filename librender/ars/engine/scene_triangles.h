@@ -30,11 +30,11 @@ struct SceneTriangles {
 Result<SceneTriangles> sceneTriangles(const Database& database, const Environment& environment,
                                       const RenderOptions& options, FrameStatistics& statistics);
 
-// Sea and sky behind everything, in triangles of integer corners whose colours at pixels are within
-// kBackgroundStep of what they stand for, but where a triangle is as small as kSmallestBackground pixels. The
-// screen begins at line first_i, pixel first_j of the picture.
-inline constexpr double kBackgroundStep = 1.5;  // of 255
-inline constexpr int kSmallestBackground = 4;
+// Sea and sky behind everything: triangles of integer corners that have every pixel once, whose colours are
+// within kBackgroundStep of what they stand for, but in squares as small as kSmallestBackground pixels. The
+// screen begins at line first_i, pixel first_j of the picture; the last squares may reach beyond the picture.
+inline constexpr double kBackgroundStep = 1.5;                          // of 255
+inline constexpr int kSmallestBackground = 4, kLargestBackground = 64;  // pixels a side
 struct BackgroundTriangle {
   std::array<ScreenPosition, 3> corner;
   std::array<std::array<double, kColors>, 3> color{};

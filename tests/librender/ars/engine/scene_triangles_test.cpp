@@ -76,7 +76,7 @@ TEST(SceneTriangles, vertices_look_as_pixels_at_their_place_do) {
 }
 
 // A sky, a horizon and a sea: every pixel belongs to a triangle whose colours meet what is there.
-TEST(BackgroundTriangles, cover_every_pixel_with_what_it_shows) {
+TEST(BackgroundTriangles, cover_every_pixel_once_with_what_it_shows) {
   const MemoryDatabase area = makeDatabase(smallArea());
   RenderOptions options;
   options.camera = cameraOver(area.database, 0.5, 0.5, 5000, 30, -2, 300, 200);
@@ -107,8 +107,10 @@ TEST(BackgroundTriangles, cover_every_pixel_with_what_it_shows) {
         }
         const bool small = std::max({a.i, b.i, c.i}) - std::min({a.i, b.i, c.i}) <= kSmallestBackground &&
                            std::max({a.j, b.j, c.j}) - std::min({a.j, b.j, c.j}) <= kSmallestBackground;
+        if (i >= 160 || j >= 240) continue;
         double& of_pixel = error[static_cast<std::size_t>(i) * 240 + static_cast<std::size_t>(j)];
-        of_pixel = std::min(of_pixel, small ? 0 : largest);
+        EXPECT_EQ(of_pixel, std::numeric_limits<double>::infinity()) << "drawn twice";
+        of_pixel = small ? 0 : largest;
       }
     }
   }
