@@ -8,7 +8,8 @@
 namespace deltaz::ars {
 
 using Picoseconds = std::int64_t;
-inline constexpr Picoseconds kNanosecond = 1000, kMicrosecond = 1000 * kNanosecond;
+inline constexpr Picoseconds kNanosecond = 1000, kMicrosecond = 1000 * kNanosecond,
+                             kMillisecond = 1000 * kMicrosecond;
 inline constexpr Picoseconds kNever = std::numeric_limits<Picoseconds>::max() / 4;
 
 // The clock of the distribution tree, 10 MHz (report 4.3.5). Cycle n begins at n * kTreeCycle.

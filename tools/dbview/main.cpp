@@ -10,6 +10,8 @@
 #include "tools/common/output_file.h"
 #include "tools/common/picture_file.h"
 #include "tools/common/progress.h"
+#include "tools/dbview/ars_report_command.h"
+#include "tools/dbview/ars_sweep_command.h"
 #include "tools/dbview/depth_description.h"
 #include "tools/dbview/options.h"
 #include "tools/dbview/statistics_json.h"
@@ -112,6 +114,24 @@ int main(int argc, char** argv) {
       addSweepOptions(command, options);
       if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
       return runSweep(options);
+    }
+    if (argc > 1 && std::string_view(argv[1]) == "ars-report") {
+      ArsReportOptions options;
+      app.set_help_flag("-h,--help", "Print this help and exit");
+      CLI::App& command = *app.add_subcommand(
+          "ars-report", "Makes the experiments of the 1983 report again, ours beside the published figures.");
+      addArsReportOptions(command, options);
+      if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
+      return runArsReport(options);
+    }
+    if (argc > 1 && std::string_view(argv[1]) == "ars-sweep") {
+      ArsSweepOptions options;
+      app.set_help_flag("-h,--help", "Print this help and exit");
+      CLI::App& command = *app.add_subcommand(
+          "ars-sweep", "Plays a recorded stream on machines of 1983 that differ in one setting.");
+      addArsSweepOptions(command, options);
+      if (const auto code = parseCommandLine(app, "dbview", argc, argv)) return *code;
+      return runArsSweep(options);
     }
     ViewOptions options;
     addViewOptions(app, options);

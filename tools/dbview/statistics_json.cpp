@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "formats/file_system.h"
+#include "librender/ars/engine/ars_frame.h"
+#include "librender/ars/machine/control_status_board.h"
 #include "librender/sweep/spread.h"
 
 namespace deltaz {
@@ -40,7 +42,43 @@ Json objectsJson(const FrameStatistics::Objects& objects) {
           {"faces_twice", objects.faces_twice}};
 }
 
-Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
+// Simulated times in milliseconds; the runs as the control/status board counted them.
+Json machineJson(const ars::Frame& frame, const ars::MachineConfiguration& configuration) {
+  const auto milliseconds = [](ars::Picoseconds time) {
+    return static_cast<double>(time) / static_cast<double>(ars::kMillisecond);
+  };
+  Json json;
+  json["settings"] = frame.settings;
+  json["passes"] = frame.passes;
+  json["sub_images"] = frame.sub_images;
+  json["background_triangles"] = frame.background;
+  json["pretiler"] = {{"in", frame.pretiler.in},
+                      {"before_hither", frame.pretiler.before_hither},
+                      {"beside", frame.pretiler.beside},
+                      {"edge_on", frame.pretiler.edge_on},
+                      {"drawn", frame.pretiler.drawn},
+                      {"cut_by_hither", frame.pretiler.cut_by_hither},
+                      {"cut_by_screen", frame.pretiler.cut_by_screen},
+                      {"out", frame.pretiler.out}};
+  json["drawing_ms"] = frame.timed ? Json(milliseconds(frame.drawing)) : Json(nullptr);
+  json["reading_ms"] = frame.timed ? Json(milliseconds(frame.reading)) : Json(nullptr);
+  json["runs"] = Json::array();
+  for (const ars::FrameRun& run : frame.runs) {
+    Json each;
+    each["sub_image"] = run.sub_image;
+    each["pass"] = run.pass;
+    each["triangles"] = run.triangles;
+    for (std::size_t k = 0; k < ars::kWriteCycleCount; ++k)
+      each["cycles"][std::string(ars::memoryCycleName(static_cast<ars::MemoryCycle>(k)))] =
+          run.memory.cycles[k];
+    if (frame.timed) each["board"] = Json::parse(ars::statisticsJson(run.statistics, configuration));
+    json["runs"].push_back(std::move(each));
+  }
+  return json;
+}
+
+Json frameJson(std::span<const FrameStatistics> repeats, const RenderOptions& render) {
+  const LodScheme lod = render.lod;
   const FrameStatistics& first = repeats.front();
   Json json;
   json["nodes"] = {{"visited", first.nodes.visited},
@@ -77,6 +115,7 @@ Json frameJson(std::span<const FrameStatistics> repeats, LodScheme lod) {
   json["coarsest_level"] = first.coarsest_level;
   json["projected_error"] = finiteOrNull(first.projected_error);
   json["transform_error"] = finiteOrNull(first.transform_error);
+  if (first.ars != nullptr) json["ars"] = machineJson(*first.ars, render.ars.machine);
   json["stages_ms"] = stagesJson(repeats);
   const Spread total =
       spreadOfTimes(repeats, [](const FrameStatistics::Milliseconds& times) { return times.total; });
@@ -114,7 +153,7 @@ Json statisticsJson(const std::string& area, const View& view, std::span<const F
   json["repeat"] = repeats.size();
   json["camera"] = cameraJson(view.render.camera);
   json["sun"] = {{"azimuth", view.render.sun.azimuth}, {"elevation", view.render.sun.elevation}};
-  json["frames"] = Json::array({frameJson(repeats, view.render.lod)});
+  json["frames"] = Json::array({frameJson(repeats, view.render)});
   return json;
 }
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "formats/file_system.h"
-#include "tools/common/output_file.h"
 #include "tools/common/parse.h"
+#include "tools/dbview/report_paths.h"
 
 namespace deltaz {
 
@@ -101,24 +101,6 @@ Result<std::vector<int>> parseSamples(const std::string& text) {
   return values;
 }
 
-Status parseReports(const SweepOptions& options, SweepPlan& plan) {
-  for (const std::string& report : options.reports) {
-    const bool json = report.starts_with("json=");
-    if (!json && !report.starts_with("svg="))
-      return usageError("--report", fmt::format("'{}' is neither json=FILE nor svg=FILE", report));
-    std::string& path = json ? plan.json_path : plan.svg_path;
-    if (!path.empty()) return usageError("--report", fmt::format("{} and {} are of one form", path, report));
-    path = report.substr(report.find('=') + 1);
-    if (path.empty()) return usageError("--report", fmt::format("the name after {} is empty", report));
-    DELTAZ_TRY(checkOutput(path, options.common.overwrite));
-  }
-  if (!plan.json_path.empty() && plan.json_path == plan.svg_path) {
-    return usageError(plan.json_path, "two results would go into one file", {},
-                      "Give each a name of its own");
-  }
-  return Success{};
-}
-
 }  // namespace
 
 void addSweepOptions(CLI::App& app, SweepOptions& options) {
@@ -153,9 +135,7 @@ void addSweepOptions(CLI::App& app, SweepOptions& options) {
       ->type_name("PX");
   app.add_option("--repeat", options.repeat, "Frames to time of each setting in each view (default: 5)")
       ->type_name("N");
-  app.add_option("--report", options.reports, "Also write the report to files; the forms are json and svg")
-      ->type_name("json=FILE,svg=FILE")
-      ->delimiter(',');
+  addReportOption(app, options.reports);
   addCommonOptions(app, options.common, true);
   app.footer(
       "Exit codes: 0 done; 1 damaged or not a database; 2 usage, target exists; 3 cannot read or write; 4 "
@@ -178,7 +158,9 @@ Result<SweepPlan> parseSweep(const SweepOptions& options) {
                     parseNumberBetween(options.reference, "--reference", 0, kLargestTolerance));
   DELTAZ_TRY_ASSIGN(const std::int64_t repeats, parseInteger(options.repeat, "--repeat", 1, kLargestRepeat));
   plan.repeats = static_cast<int>(repeats);
-  DELTAZ_TRY(parseReports(options, plan));
+  DELTAZ_TRY_ASSIGN(const ReportPaths paths, parseReportPaths(options.reports, options.common.overwrite));
+  plan.json_path = paths.json;
+  plan.svg_path = paths.svg;
   DELTAZ_TRY_ASSIGN(plan.render, parseScene(options.scene, options.common));
   plan.render.sampling = parseSampling(options.sampling);
   if (!options.views_path.empty()) {

@@ -6,12 +6,11 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <tbb/parallel_for.h>
 
 #include "librender/ars/antialiaser/shift_add_filter.h"
 #include "librender/ars/engine/ars_frame.h"
 #include "librender/ars/engine/frame_stream.h"
-#include "librender/ars/machine/machine.h"
+#include "librender/ars/engine/stream_player.h"
 #include "librender/ars/machine/triangle_source.h"
 #include "librender/ars/tiler/span_tiler.h"
 #include "librender/scene/arena.h"
@@ -19,9 +18,6 @@
 
 namespace deltaz {
 namespace {
-
-using ars::kScreenLines;
-using ars::kScreenPixels;
 
 Status checkMachineCan(const RenderOptions& options) {
   if (!options.sampling.isPlain()) {
@@ -84,63 +80,6 @@ Result<SampledScene> sampledScene(const Database& database, const RenderOptions&
   return SampledScene{raster, std::move(environment), std::move(triangles)};
 }
 
-// One word of a depth/frame memory.
-struct DepthWord {
-  std::uint32_t depth = 0;
-  bool written = false;
-};
-
-// What the memories of all sub-images hold, put together.
-struct SamplePicture {
-  int width = 0, height = 0;
-  std::vector<std::vector<std::uint8_t>> color;  // of each pass
-  std::vector<DepthWord> depth;
-  std::vector<std::uint32_t> owner;  // triangle of the scene
-};
-
-void copySubImage(const ars::Machine& machine, const ars::SubImageOrigin& origin, SamplePicture& picture) {
-  for (int i = 0; i < std::min(kScreenLines, picture.height - origin.i); ++i) {
-    for (int j = 0; j < std::min(kScreenPixels, picture.width - origin.j); ++j) {
-      picture.depth[static_cast<std::size_t>(origin.i + i) * static_cast<std::size_t>(picture.width) +
-                    static_cast<std::size_t>(origin.j + j)] = {machine.depth(i, j), machine.written(i, j)};
-    }
-  }
-}
-
-void copyColors(const std::vector<std::uint8_t>& screen, const ars::SubImageOrigin& origin,
-                std::vector<std::uint8_t>& color, int width, int height) {
-  const int pixels = std::min(kScreenPixels, width - origin.j);
-  for (int i = 0; i < std::min(kScreenLines, height - origin.i); ++i) {
-    const auto from = screen.begin() + static_cast<std::ptrdiff_t>(i) * kScreenPixels;
-    std::copy(from, from + pixels,
-              color.begin() + static_cast<std::ptrdiff_t>(origin.i + i) * width + origin.j);
-  }
-}
-
-// What a machine draws of one sub-image in one colour.
-Result<ars::FrameRun> drawRun(const ars::FrameStream& frame, const ArsOptions& options,
-                              std::uint32_t sub_image, int pass, SamplePicture& picture) {
-  const ars::TilerConfiguration tiler{ars::frameNumbers(options), options.tiler.corrections};
-  DELTAZ_TRY_ASSIGN(const ars::TriangleSource source,
-                    ars::triangleSource(frame.stream, sub_image, pass, tiler));
-  DELTAZ_TRY_ASSIGN(ars::Machine machine, ars::Machine::make(options.machine));
-  ars::FrameRun run;
-  run.sub_image = sub_image;
-  run.pass = pass;
-  run.triangles = source.triangles();
-  if (options.timed) {
-    DELTAZ_TRY_ASSIGN(run.statistics, machine.runTimed(source));
-    run.memory = run.statistics.memoryCounts();
-  } else {
-    run.memory = machine.runFunctional(source);
-  }
-  const ars::SubImageOrigin origin = ars::subImageOrigin(sub_image, frame.stream.picture_width);
-  if (pass == 0) copySubImage(machine, origin, picture);
-  copyColors(machine.readPicture(), origin, picture.color[static_cast<std::size_t>(pass)], picture.width,
-             picture.height);
-  return run;
-}
-
 // Whose pixel is seen: the machine's rule, nearest first come, on triangles with names. Also which triangles
 // have pixels at all, and how many.
 struct Owners {
@@ -149,11 +88,12 @@ struct Owners {
 };
 
 Result<Owners> findOwners(const ars::FrameStream& frame, const ArsOptions& options, std::size_t triangles,
-                          SamplePicture& picture) {
-  const ars::TilerConfiguration tiler{ars::frameNumbers(options), options.tiler.corrections};
+                          std::vector<std::uint32_t>& owner) {
+  const ars::TilerConfiguration tiler = ars::tilerOf(frame.stream, options);
+  const int width = frame.stream.picture_width, height = frame.stream.picture_height;
   Owners owners;
   owners.tiled.assign(triangles, 0);
-  std::vector<DepthWord> seen(picture.depth.size());
+  std::vector<ars::DepthWord> seen(owner.size());
   std::vector<ars::PixelPacket> pixels;
   const auto sub_images =
       static_cast<std::uint32_t>(ars::subImageCount(frame.stream.picture_width, frame.stream.picture_height));
@@ -174,12 +114,12 @@ Result<Owners> findOwners(const ars::FrameStream& frame, const ArsOptions& optio
       for (const ars::PixelPacket& pixel : pixels) {
         // Tolerances reach beyond a picture that does not fill the screen.
         const int i = origin.i + pixel.i, j = origin.j + pixel.j;
-        if (i >= picture.height || j >= picture.width) continue;
-        const std::size_t at = static_cast<std::size_t>(i) * static_cast<std::size_t>(picture.width) +
-                               static_cast<std::size_t>(j);
+        if (i >= height || j >= width) continue;
+        const std::size_t at =
+            static_cast<std::size_t>(i) * static_cast<std::size_t>(width) + static_cast<std::size_t>(j);
         if (seen[at].written && pixel.depth <= seen[at].depth) continue;
         seen[at] = {pixel.depth, true};
-        picture.owner[at] = names[t];
+        owner[at] = names[t];
       }
     }
   }
@@ -188,7 +128,7 @@ Result<Owners> findOwners(const ars::FrameStream& frame, const ArsOptions& optio
 
 // The picture that is shown of the samples.
 Picture shownPicture(const SampledScene& scene, const RenderOptions& asked, const ars::DepthFormat& depths,
-                     const SamplePicture& samples) {
+                     const ars::PlayedStream& samples, const std::vector<std::uint32_t>& owners) {
   Picture picture = makePicture(asked);
   std::vector<std::vector<std::uint8_t>> colors;
   for (const std::vector<std::uint8_t>& color : samples.color) {
@@ -209,7 +149,7 @@ Picture shownPicture(const SampledScene& scene, const RenderOptions& asked, cons
         const double inverse_u = depths.decode(samples.depth[sample].depth);
         picture.depth[pixel] =
             inverse_u > 0 ? static_cast<float>(1 / inverse_u) : std::numeric_limits<float>::infinity();
-        const std::uint32_t owner = samples.owner[sample];
+        const std::uint32_t owner = owners[sample];
         picture.surface[pixel] = owner < scene.triangles.terrain ? Surface::kTerrain : Surface::kModel;
         if (asked.keep_triangle_ids) picture.triangle[pixel] = scene.triangles.identity[owner];
         continue;
@@ -240,22 +180,16 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
   const ArsOptions& options = asked.ars;
   const ars::FrameStream frame = ars::makeFrameStream(scene.triangles, scene.environment, options);
 
-  SamplePicture samples;
-  samples.width = scene.environment.view.width;
-  samples.height = scene.environment.view.height;
-  const std::size_t count =
-      static_cast<std::size_t>(samples.width) * static_cast<std::size_t>(samples.height);
-  samples.color.assign(static_cast<std::size_t>(options.passes), std::vector<std::uint8_t>(count));
-  samples.depth.resize(count);
-  samples.owner.assign(count, ars::kOfBackground);
-  DELTAZ_TRY_ASSIGN(const Owners owners,
-                    findOwners(frame, options, scene.triangles.triangles.size(), samples));
+  const int width = frame.stream.picture_width, height = frame.stream.picture_height;
+  std::vector<std::uint32_t> owner(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                                   ars::kOfBackground);
+  DELTAZ_TRY_ASSIGN(const Owners owners, findOwners(frame, options, scene.triangles.triangles.size(), owner));
   statistics.milliseconds.objects += watch.lap();
 
   auto report = std::make_shared<ars::Frame>();
-  report->picture_width = samples.width;
-  report->picture_height = samples.height;
-  report->sub_images = ars::subImageCount(samples.width, samples.height);
+  report->picture_width = width;
+  report->picture_height = height;
+  report->sub_images = ars::subImageCount(width, height);
   report->passes = options.passes;
   report->timed = options.timed;
   report->settings = describeArsOptions(options);
@@ -264,26 +198,17 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
     if (batch.pass == 0 && batch.phase == ars::DrawPhase::kBackground)
       report->background += batch.triangles.size();
   }
-  const auto runs = static_cast<std::size_t>(report->sub_images * options.passes);
-  std::vector<std::optional<Result<ars::FrameRun>>> made(runs);
-  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t n) {
-    const auto passes = static_cast<std::size_t>(options.passes);
-    made[n].emplace(drawRun(frame, options, static_cast<std::uint32_t>(n / passes),
-                            static_cast<int>(n % passes), samples));
-  });
-  for (std::optional<Result<ars::FrameRun>>& run : made) {
-    if (!run->ok()) return run->error();
-    report->runs.push_back(std::move(*run).value());
-    report->drawing += report->runs.back().statistics.duration;
-    report->reading += report->runs.back().statistics.reading;
-  }
+  DELTAZ_TRY_ASSIGN(ars::PlayedStream samples, ars::playStream(frame.stream, options));
+  report->runs = std::move(samples.runs);
+  report->drawing = samples.drawing;
+  report->reading = samples.reading;
   statistics.milliseconds.raster = watch.lap();
 
-  Picture picture = shownPicture(scene, asked, ars::frameNumbers(options).depth, samples);
+  Picture picture = shownPicture(scene, asked, ars::frameNumbers(options).depth, samples, owner);
   countTriangles(frame, owners, statistics.triangles);
   statistics.samples.tested = owners.pixels;
-  statistics.samples.shaded = static_cast<std::uint64_t>(std::count_if(
-      samples.owner.begin(), samples.owner.end(), [](std::uint32_t n) { return n != ars::kOfBackground; }));
+  statistics.samples.shaded = static_cast<std::uint64_t>(
+      std::count_if(owner.begin(), owner.end(), [](std::uint32_t n) { return n != ars::kOfBackground; }));
   for (const ars::FrameRun& run : report->runs) {
     if (run.pass != 0) continue;
     for (const ars::MemoryCycle cycle : {ars::MemoryCycle::kInitialize, ars::MemoryCycle::kLookAheadWrite,
