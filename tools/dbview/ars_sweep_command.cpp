@@ -14,6 +14,7 @@
 #include "tools/common/json_output.h"
 #include "tools/common/line_svg.h"
 #include "tools/common/output_file.h"
+#include "tools/common/picture_file.h"
 #include "tools/common/progress.h"
 #include "tools/dbview/report_paths.h"
 
@@ -31,7 +32,8 @@ struct ArsSweepRow {
   double memory_cycle_ns = 0;       // mean of write cycles
   double lost_percent = 0;          // of the tree's registers' time, in arbitration
   double blocked_percent = 0;       // of the tilers' time
-  double peak_signal_to_noise = 0;  // dB, against the picture of the settings that are not swept
+  double peak_signal_to_noise = 0;  // dB, against the judge
+  int triangle_bits = 0, pixel_bits = 0;
   std::uint64_t pixels = 0;
 };
 
@@ -47,27 +49,48 @@ std::vector<std::string> valuesOf(const std::string& text) {
   return values;
 }
 
-double decibels(const ars::PlayedStream& picture, const ars::PlayedStream& judge) {
+// What pictures are held against: one of as many colours as the stream has passes.
+using Colors = std::vector<std::vector<std::uint8_t>>;
+
+// The same of a picture file, which a stream of one pass, brightness alone, cannot be held against.
+Result<Colors> colorsOf(const std::string& path, const ars::TriangleStream& stream) {
+  DELTAZ_TRY_ASSIGN(const PictureColors picture, readPicture(path));
+  if (picture.width != stream.picture_width || picture.height != stream.picture_height) {
+    return usageError(path,
+                      fmt::format("it has {} x {} pixels, the stream's picture {} x {}", picture.width,
+                                  picture.height, stream.picture_width, stream.picture_height),
+                      {}, "Draw the same view with --engine reference, as large as the stream's samples");
+  }
+  if (stream.passes != ars::kColors)
+    return usageError("--against", "the stream is of brightness alone", {}, "Record one in colour");
+  Colors colors(ars::kColors);
+  for (std::size_t k = 0; k < picture.rgb.size(); ++k) colors[k % ars::kColors].push_back(picture.rgb[k]);
+  return colors;
+}
+
+double decibels(const Colors& picture, const Colors& judge) {
   double sum = 0;
   std::size_t count = 0;
-  for (std::size_t pass = 0; pass < picture.color.size(); ++pass) {
-    for (std::size_t k = 0; k < picture.color[pass].size(); ++k) {
-      const double difference = static_cast<double>(picture.color[pass][k]) - judge.color[pass][k];
+  for (std::size_t pass = 0; pass < picture.size(); ++pass) {
+    for (std::size_t k = 0; k < picture[pass].size(); ++k) {
+      const double difference = static_cast<double>(picture[pass][k]) - judge[pass][k];
       sum += difference * difference;
     }
-    count += picture.color[pass].size();
+    count += picture[pass].size();
   }
   return sum > 0 ? 10 * std::log10(255.0 * 255.0 * static_cast<double>(count) / sum)
                  : std::numeric_limits<double>::infinity();
 }
 
 ArsSweepRow rowOf(const std::string& value, const ArsOptions& options, const ars::PlayedStream& played,
-                  const ars::PlayedStream& judge) {
+                  const Colors& judge) {
   ArsSweepRow row;
   row.value = value;
   row.frame_ms = static_cast<double>(played.drawing) / static_cast<double>(ars::kMillisecond);
   row.reading_ms = static_cast<double>(played.reading) / static_cast<double>(ars::kMillisecond);
-  row.peak_signal_to_noise = decibels(played, judge);
+  row.peak_signal_to_noise = decibels(played.color, judge);
+  row.triangle_bits = ars::triangleBits(options.tiler.numbers);
+  row.pixel_bits = ars::pixelBits(options.tiler.numbers);
   ars::CycleCounts cycles{};
   double lost = 0, tree_time = 0, blocked = 0, tiler_time = 0;
   for (const ars::FrameRun& run : played.runs) {
@@ -106,19 +129,24 @@ Json rowsJson(const std::vector<ArsSweepRow>& rows) {
                     {"memory_cycle_ns", row.memory_cycle_ns},
                     {"arbitration_lost_percent", row.lost_percent},
                     {"tilers_blocked_percent", row.blocked_percent},
-                    {"psnr_db", finiteOrNull(row.peak_signal_to_noise)}});
+                    {"psnr_db", finiteOrNull(row.peak_signal_to_noise)},
+                    {"triangle_bits", row.triangle_bits},
+                    {"pixel_bits", row.pixel_bits}});
   }
   return list;
 }
 
 void printRows(const std::string& key, const std::vector<ArsSweepRow>& rows) {
-  std::cout << fmt::format("{:>16} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>9}\n", key, "frame ms",
-                           "px/100 ns", "queue", "mem ns", "lost %", "block %", "PSNR dB");
+  std::cout << fmt::format("{:>16} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}\n", key,
+                           "frame ms", "px/100 ns", "queue", "mem ns", "lost %", "block %", "PSNR dB",
+                           "bits/tri", "bits/px");
   for (const ArsSweepRow& row : rows) {
     std::cout << fmt::format(
-        "{:>16} {:>10.3f} {:>10.3f} {:>10} {:>8.1f} {:>8.2f} {:>8.2f} {:>9}\n", row.value, row.frame_ms,
-        row.pixels_per_cycle, row.longest_queue, row.memory_cycle_ns, row.lost_percent, row.blocked_percent,
-        std::isfinite(row.peak_signal_to_noise) ? fmt::format("{:.1f}", row.peak_signal_to_noise) : "same");
+        "{:>16} {:>10.3f} {:>10.3f} {:>10} {:>8.1f} {:>8.2f} {:>8.2f} {:>9} {:>9} {:>9}\n", row.value,
+        row.frame_ms, row.pixels_per_cycle, row.longest_queue, row.memory_cycle_ns, row.lost_percent,
+        row.blocked_percent,
+        std::isfinite(row.peak_signal_to_noise) ? fmt::format("{:.1f}", row.peak_signal_to_noise) : "same",
+        row.triangle_bits, row.pixel_bits);
   }
 }
 
@@ -141,7 +169,7 @@ std::string sweepSvg(const std::string& key, const std::vector<ArsSweepRow>& row
             [](const ArsSweepRow& row) { return static_cast<double>(row.longest_queue); }),
       panel("Lost in arbitration", "% of the tree's time",
             [](const ArsSweepRow& row) { return row.lost_percent; }),
-      panel("Picture against the settings not swept", "dB",
+      panel("Picture against the judge", "dB",
             [](const ArsSweepRow& row) { return row.peak_signal_to_noise; })};
   return lineSvg("The machine of 1983: " + key, panels);
 }
@@ -157,6 +185,10 @@ void addArsSweepOptions(CLI::App& app, ArsSweepOptions& options) {
       ->type_name("VALUE,...");
   app.add_option("--ars", options.ars, "All other settings (default: the report's machine)")
       ->type_name("KEY=VALUE,...");
+  addPathOption(app, "--against", options.against,
+                "Hold pictures against this one, e.g. of --engine reference (default: the machine of the "
+                "other settings)")
+      ->type_name("FILE.png");
   addReportOption(app, options.reports);
   addCommonOptions(app, options.common, true);
 }
@@ -187,7 +219,13 @@ Result<int> runArsSweep(const ArsSweepOptions& options) {
   ProgressReporter progress(progressMode(options.common), "dbview", std::cerr);
   std::vector<ArsSweepRow> rows;
   DELTAZ_TRY(drawOnThreads(threads, [&]() -> Result<Picture> {
-    DELTAZ_TRY_ASSIGN(const ars::PlayedStream judge, ars::playStream(stream, base));
+    Colors judge;
+    if (options.against.empty()) {
+      DELTAZ_TRY_ASSIGN(ars::PlayedStream played, ars::playStream(stream, base));
+      judge = std::move(played.color);
+    } else {
+      DELTAZ_TRY_ASSIGN(judge, colorsOf(options.against, stream));
+    }
     for (std::size_t n = 0; n < machines.size(); ++n) {
       progress.report(fmt::format("{}={}", options.key, values[n]),
                       static_cast<double>(n) / static_cast<double>(machines.size()));

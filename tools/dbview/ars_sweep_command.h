@@ -11,7 +11,7 @@ namespace deltaz {
 
 struct ArsSweepOptions {
   CommonOptions common;
-  std::string stream, key, values, ars;
+  std::string stream, key, values, ars, against;
   std::vector<std::string> reports;
 };
 

@@ -226,7 +226,7 @@ std::vector<Setting> makeSettings() {
   all.push_back(width({"color-bits", "2 to 24", "mantissa bits of colour planes (10)"}, 2, 24,
                       ars::withColorMantissaBits,
                       [](const Numbers& numbers) { return numbers.color.mantissa_bits; }));
-  all.push_back(width({"plane-bits", "4 to 40", "mantissa bits of depth planes (24)"}, 4, 40,
+  all.push_back(width({"plane-bits", "2 to 24", "mantissa bits of depth planes (24)"}, 2, 24,
                       ars::withPlaneMantissaBits,
                       [](const Numbers& numbers) { return numbers.depth_plane.mantissa_bits; }));
   all.push_back(width({"depth-bits", "2 to 27", "mantissa bits of depths in memory (19)"}, 2, 27,
