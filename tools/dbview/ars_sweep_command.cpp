@@ -138,7 +138,7 @@ Json rowsJson(const std::vector<ArsSweepRow>& rows) {
 
 void printRows(const std::string& key, const std::vector<ArsSweepRow>& rows) {
   std::cout << fmt::format("{:>16} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}\n", key,
-                           "frame ms", "px/100 ns", "queue", "mem ns", "lost %", "block %", "PSNR dB",
+                           "frame ms", "px/100 ns", "longest q", "mem ns", "lost %", "block %", "PSNR dB",
                            "bits/tri", "bits/px");
   for (const ArsSweepRow& row : rows) {
     std::cout << fmt::format(
@@ -204,8 +204,15 @@ Result<int> runArsSweep(const ArsSweepOptions& options) {
       return usageError("--key", fmt::format("{} is not a setting of the machine that plays a stream", fixed),
                         {}, "Record one stream for each value, or choose another key");
   }
+  const std::string others = "," + options.ars;
+  if (others.find("," + options.key + "=") != std::string::npos)
+    return usageError("--ars", fmt::format("{} is what is swept", options.key), {}, "Leave it out of --ars");
   std::vector<ArsOptions> machines;
-  for (const std::string& value : values) {
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const std::string& value = values[n];
+    if (std::find(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), value) !=
+        values.begin() + static_cast<std::ptrdiff_t>(n))
+      return usageError("--values", fmt::format("{} stands there twice", value), {}, "Give each value once");
     ArsOptions machine = base;
     DELTAZ_TRY(setArsOption(options.key, value, machine));
     DELTAZ_TRY(ars::validate(machine.machine));
