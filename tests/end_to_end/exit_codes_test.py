@@ -96,7 +96,7 @@ def wrong_options_end_with_2_and_are_named(folder):
             (["--transform"], ["dbview", area, *png, "--transform", "float"]),
             (["--transform", "reference"], ["dbview", area, *png, "--transform", "delta", "--engine", "reference"]),
             (["--simd"], ["dbview", area, *png, "--simd", "mmx"]),
-            (["--engine"], ["dbview", area, *png, "--engine", "ars"]),
+            (["--engine"], ["dbview", area, *png, "--engine", "lathe"]),
             (["--repeat"], ["dbview", area, *png, "--repeat", "0"]),
             (["--color"], ["dbview", area, *png, "--color", "summer"]),
             (["AREA.dz"], ["dbcheck"]),
