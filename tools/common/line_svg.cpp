@@ -90,14 +90,7 @@ class PanelDrawing {
       svg += svgLine(left_, y_.place(tick), right_, y_.place(tick), "#dddddd");
       svg += svgText(left_ - 6, y_.place(tick) + 4, "end", fmt::format("{:.6g}", tick));
     }
-    svg += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
-        "stroke=\"#444444\"/>\n",
-        left_, top_, right_ - left_, bottom_ - top_);
-    svg += svgText((left_ + right_) / 2, bottom_ + 38, "middle", panel_.x_label);
-    const double middle = (top_ + bottom_) / 2;
-    svg += svgText(left_ - 48, middle, "middle", panel_.y_label,
-                   fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", left_ - 48, middle));
+    svg += svgPanelFrame({left_, top_, right_, bottom_}, panel_.x_label, panel_.y_label);
     for (std::size_t s = 0; s < panel_.series.size(); ++s) svg += curve(s);
     return svg + legend();
   }

@@ -90,14 +90,7 @@ class PanelDrawing {
       // Below this line the axis is none.
       svg += svgLine(left_, bottom_ - kZeroBand, right_, bottom_ - kZeroBand, "#999999");
     }
-    svg += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
-        "stroke=\"#444444\"/>\n",
-        left_, top_, right_ - left_, bottom_ - top_);
-    svg += svgText((left_ + right_) / 2, bottom_ + 38, "middle", panel_.x_label);
-    const double middle = (top_ + bottom_) / 2;
-    svg += svgText(left_ - 48, middle, "middle", panel_.y_label,
-                   fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", left_ - 48, middle));
+    svg += svgPanelFrame({left_, top_, right_, bottom_}, panel_.x_label, panel_.y_label);
     svg += frontLine();
     for (const ScatterPoint& point : panel_.points) {
       if (!shown(point)) continue;

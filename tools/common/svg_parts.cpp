@@ -74,4 +74,15 @@ std::string svgPolyline(const std::string& points, const char* stroke, bool dash
                      stroke, dashed ? " stroke-dasharray=\"5 3\"" : "");
 }
 
+std::string svgPanelFrame(const SvgFrame& frame, const std::string& x_label, const std::string& y_label) {
+  std::string svg = fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
+      "stroke=\"#444444\"/>\n",
+      frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
+  svg += svgText((frame.left + frame.right) / 2, frame.bottom + 38, "middle", x_label);
+  const double middle = (frame.top + frame.bottom) / 2;
+  return svg + svgText(frame.left - 48, middle, "middle", y_label,
+                       fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", frame.left - 48, middle));
+}
+
 }  // namespace deltaz

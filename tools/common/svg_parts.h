@@ -20,4 +20,10 @@ std::string svgText(double x, double y, const std::string& anchor, const std::st
 std::string svgLine(double x1, double y1, double x2, double y2, const char* stroke);
 std::string svgPolyline(const std::string& points, const char* stroke, bool dashed = false);
 
+// Of a panel's plot: its border, and what its axes are called, below and to the left of it.
+struct SvgFrame {
+  double left = 0, top = 0, right = 0, bottom = 0;
+};
+std::string svgPanelFrame(const SvgFrame& frame, const std::string& x_label, const std::string& y_label);
+
 }  // namespace deltaz
