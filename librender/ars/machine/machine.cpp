@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "librender/ars/machine/functional_memory.h"
 #include "librender/ars/machine/hardware_software_interface.h"
 #include "librender/ars/words/triangle_words.h"
 
@@ -158,7 +159,7 @@ Result<Machine> Machine::make(const MachineConfiguration& configuration) {
 }
 
 void Machine::reset() {
-  words_.assign(std::size_t{kScreenLines} * kScreenPixels, 0);
+  words_.assign(FunctionalMemory::kWords + FunctionalMemory::kPadding, 0);
 }
 
 MemoryModule Machine::module() {
@@ -221,21 +222,17 @@ Result<PassStatistics> Machine::runTimed(const PixelSource& source) {
 }
 
 MemoryCounts Machine::runFunctional(const PixelSource& source) {
-  MemoryModule memory = module();
-  std::vector<PixelPacket> room;
-  for (std::size_t triangle = 0; triangle < source.triangles(); ++triangle) {
-    for (const PixelPacket& pixel : source.pixels(triangle, room))
-      memory.write(static_cast<std::uint32_t>(placeOf(pixel.i, pixel.j)),
-                   memoryWord(pixel.depth, pixel.color), pixel.background);
-  }
+  FunctionalMemory memory(words_, configuration_.ties, configuration_.depth_mantissa_bits);
+  for (std::size_t triangle = 0; triangle < source.triangles(); ++triangle) source.write(triangle, memory);
   return memory.counts();
 }
 
 std::vector<std::uint8_t> Machine::readPicture() {
   MemoryModule memory = module();
   std::vector<std::uint8_t> picture;
-  picture.reserve(words_.size());
-  for (std::uint32_t place = 0; place < words_.size(); ++place) picture.push_back(memory.read(place));
+  picture.reserve(FunctionalMemory::kWords);
+  for (std::uint32_t place = 0; place < FunctionalMemory::kWords; ++place)
+    picture.push_back(memory.read(place));
   return picture;
 }
 

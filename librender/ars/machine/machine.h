@@ -6,7 +6,7 @@
 // TieRule::kBrighter; and if background pixels stand behind barriers. So do all configurations.
 //
 // One colour word is held at a time: a picture in colours is three runs with a reading after each.
-// Cost: some 250 ns a pixel timed, 40 ns not; small triangles more. Thread-safety: one thread a machine.
+// Cost: some 250 ns a pixel timed, 25 ns not; small triangles more. Thread-safety: one thread a machine.
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,7 @@ class Machine {
 
   MachineConfiguration configuration_;
   MemoryMap map_;
-  std::vector<std::uint64_t> words_;  // of all memories, line by line
+  std::vector<std::uint64_t> words_;  // of all memories, line by line, and FunctionalMemory's padding
 };
 
 }  // namespace deltaz::ars

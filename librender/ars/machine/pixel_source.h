@@ -13,6 +13,8 @@
 
 namespace deltaz::ars {
 
+class FunctionalMemory;
+
 // A pixel of a triangle, and the samples it took to find it.
 struct SampledPixel {
   std::int32_t samples = 1;  // since the pixel before, or since the triangle's first; this one included
@@ -45,6 +47,8 @@ class PixelSource {
   // The same pixels, in any order. They may stand in `room`, which is the caller's to give again and grows as
   // is needed; valid until then.
   virtual std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const = 0;
+  // Writes the same pixels.
+  virtual void write(std::size_t triangle, FunctionalMemory& memory) const = 0;
 
  protected:
   PixelSource(const PixelSource&) = default;
@@ -68,6 +72,7 @@ class RecordedPixels final : public PixelSource {
     result = list[triangle].sampled;
   }
   std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const override;
+  void write(std::size_t triangle, FunctionalMemory& memory) const override;
 };
 
 }  // namespace deltaz::ars

@@ -1,5 +1,6 @@
 #include "librender/ars/machine/triangle_source.h"
 
+#include "librender/ars/machine/functional_memory.h"
 #include "librender/ars/tiler/span_tiler.h"
 #include "librender/ars/tiler/tiler_timing.h"
 #include "librender/ars/tiler/triangle_encoder.h"
@@ -65,6 +66,11 @@ std::span<const PixelPacket> TriangleSource::pixels(std::size_t triangle,
     return room.data() + (count - more);
   });
   return std::span(room).first(count);
+}
+
+void TriangleSource::write(std::size_t triangle, FunctionalMemory& memory) const {
+  memory.write(setUpTriangle(triangles_[triangle], configuration_, supplement(triangle)),
+               configuration_.numbers);
 }
 
 Result<TriangleSource> triangleSource(const TriangleStream& stream, std::uint32_t sub_image, int pass,

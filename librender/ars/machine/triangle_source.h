@@ -35,6 +35,7 @@ class TriangleSource final : public PixelSource {
   Picoseconds setUpTime(std::size_t triangle) const override;
   void sample(std::size_t triangle, SampledTriangle& result) const override;
   std::span<const PixelPacket> pixels(std::size_t triangle, std::vector<PixelPacket>& room) const override;
+  void write(std::size_t triangle, FunctionalMemory& memory) const override;
 
   const TilerConfiguration& configuration() const { return configuration_; }
 

@@ -81,15 +81,35 @@ class SingleAccumulator {
         offset_(static_cast<std::int32_t>(127 - numbers.depth.exponent_bias) << numbers.depth.mantissa_bits),
         largest_(static_cast<std::int32_t>(numbers.depth.largestWord())) {}
 
-  void beginLine(int line) {
+  // At a line's first pixel of the box.
+  struct Line {
+    float depth = 0, color = 0;
+  };
+  Line line(int line) const {
     const auto lines = static_cast<float>(line);
-    depth_line_ = depth_.start + lines * depth_.line;
-    color_line_ = tenBits(color_.start + tenBits(lines * color_.line));
+    return {.depth = depth_.start + lines * depth_.line,
+            .color = tenBits(color_.start + tenBits(lines * color_.line))};
   }
+  // What at() computes with from there, for others who do: depth and colour a step, and the bits of memory
+  // words.
+  struct Steps {
+    float depth = 0, color = 0;
+    int dropped_bits = 0;
+    std::int32_t offset = 0, largest = 0;
+  };
+  Steps steps() const {
+    return {.depth = depth_.pixel,
+            .color = color_.pixel,
+            .dropped_bits = dropped_bits_,
+            .offset = offset_,
+            .largest = largest_};
+  }
+
+  void beginLine(int line) { line_ = this->line(line); }
   PixelValues at(int pixel) const {
     const auto pixels = static_cast<float>(pixel);
-    const float depth = depth_line_ + pixels * depth_.pixel;
-    const float color = tenBits(color_line_ + tenBits(pixels * color_.pixel)) + 0.5F;
+    const float depth = line_.depth + pixels * depth_.pixel;
+    const float color = tenBits(line_.color + tenBits(pixels * color_.pixel)) + 0.5F;
     return {.depth = word(depth), .color = static_cast<std::uint8_t>(std::clamp(color, 0.0F, 255.0F))};
   }
 
@@ -121,7 +141,7 @@ class SingleAccumulator {
   Plane depth_, color_;
   int dropped_bits_;
   std::int32_t offset_, largest_;
-  float depth_line_ = 0, color_line_ = 0;
+  Line line_;
 };
 
 }  // namespace deltaz::ars
