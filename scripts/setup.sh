@@ -6,9 +6,9 @@
 # Runs as root, or with sudo; never asks. Where everything is there it touches nothing and needs no rights.
 set -eu
 
-build_packages="g++ cmake ninja-build pkg-config libgdal-dev libproj-dev libcgal-dev libgeographiclib-dev libopenimageio-dev libcli11-dev
+build_packages="g++ cmake ninja-build pkg-config libgdal-dev libproj-dev libcgal-dev libgeographiclib-dev libpng-dev libtiff-dev libcli11-dev
   libtbb-dev libhwy-dev libxxhash-dev libzstd-dev nlohmann-json3-dev libtomlplusplus-dev libopenmesh-dev libassimp-dev libfmt-dev scdoc"
-test_packages="libgtest-dev librapidcheck-dev libbenchmark-dev gdal-bin python3 python3-gdal python3-jsonschema"
+test_packages="libgtest-dev librapidcheck-dev gdal-bin python3 python3-gdal python3-jsonschema"
 style_packages="clang-format clang-tidy"
 
 case "${1:-test}" in

@@ -14,7 +14,7 @@
 #include "tools/common/json_output.h"
 #include "tools/common/line_svg.h"
 #include "tools/common/output_file.h"
-#include "tools/common/picture_file.h"
+#include "tools/common/png_file.h"
 #include "tools/common/progress.h"
 #include "tools/dbview/report_paths.h"
 
@@ -54,7 +54,7 @@ using Colors = std::vector<std::vector<std::uint8_t>>;
 
 // The same of a picture file, which a stream of one pass, brightness alone, cannot be held against.
 Result<Colors> colorsOf(const std::string& path, const ars::TriangleStream& stream) {
-  DELTAZ_TRY_ASSIGN(const PictureColors picture, readPicture(path));
+  DELTAZ_TRY_ASSIGN(const PictureColors picture, readPng(path));
   if (picture.width != stream.picture_width || picture.height != stream.picture_height) {
     return usageError(path,
                       fmt::format("it has {} x {} pixels, the stream's picture {} x {}", picture.width,

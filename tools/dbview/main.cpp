@@ -7,8 +7,9 @@
 
 #include "librender/ars/engine/ars_engine.h"
 #include "librender/scene/conservation.h"
+#include "tools/common/depth_tiff.h"
 #include "tools/common/output_file.h"
-#include "tools/common/picture_file.h"
+#include "tools/common/png_file.h"
 #include "tools/common/progress.h"
 #include "tools/dbview/ars_report_command.h"
 #include "tools/dbview/ars_sweep_command.h"
