@@ -1,6 +1,7 @@
 """kill -9 at random moments: a target is absent or complete, and the next run cleans up.
 
-DELTAZ_KILLS is the number of kills of each case (8; half of it where a case has two states or edits), DELTAZ_KILL_SEED makes a run repeatable.
+DELTAZ_KILLS is the number of kills of each case (4; half of it where a case has two states or edits), DELTAZ_KILL_SEED makes a run repeatable.
+The moments are spread over the time a command takes: one at random in each of as many equal parts.
 """
 import os
 import random
@@ -10,7 +11,7 @@ import time
 
 from harness import RAINIER, build, case, main, no_leftovers, program, require, run, small_dem
 
-KILLS = int(os.environ.get("DELTAZ_KILLS", "8"))
+KILLS = int(os.environ.get("DELTAZ_KILLS", "4"))
 SEED = os.environ.get("DELTAZ_KILL_SEED", str(time.time_ns()))
 
 
@@ -24,6 +25,11 @@ def killed_after(seconds, command):
         process.kill()
         process.wait()
         return True
+
+
+def spread(moments, count, end):
+    """Moments in order, one in each of `count` equal parts of 0 .. end."""
+    return [moments.uniform(part, part + 1) * end / count for part in range(count)]
 
 
 def duration(command):
@@ -42,8 +48,8 @@ def a_killed_build_leaves_nothing_or_everything(folder):
     digest = run("dbbuild", "info", target, "--digest").out
     shutil.rmtree(target)
     absent = complete = 0
-    for _ in range(KILLS):
-        killed_after(moments.uniform(0, 1.05 * whole), command)
+    for moment in spread(moments, KILLS, 1.05 * whole):
+        killed_after(moment, command)
         if target.exists():
             complete += 1
             run("dbcheck", target, "--level", "all")
@@ -70,9 +76,9 @@ def a_killed_overwrite_leaves_the_old_or_the_new_state(folder):
     command = [program("dbbuild"), "terrain", RAINIER, "-o", target, "-q", "--overwrite"]
     whole = duration(command)
     found = {"old": 0, "new": 0}
-    for _ in range(KILLS):
+    for moment in spread(moments, KILLS, 1.05 * whole):
         run("dbbuild", "terrain", old_dem, "-o", target, "--overwrite")
-        killed_after(moments.uniform(0, 1.05 * whole), command)
+        killed_after(moment, command)
         run("dbcheck", target, "--level", "all")
         digest = run("dbbuild", "info", target, "--digest").out
         state = [name for name, value in digests.items() if value == digest]
@@ -99,11 +105,11 @@ def a_killed_run_leaves_the_old_database_or_the_new_one(folder):
     whole = duration(command)
     for exists in (False, True):
         found = {"old": 0, "new": 0}
-        for _ in range(KILLS // 2):
+        for moment in spread(moments, KILLS // 2, 1.05 * whole):
             shutil.rmtree(target)
             if exists:
                 run("dbbuild", "terrain", work / "small.tif", "-o", target)
-            killed_after(moments.uniform(0, 1.05 * whole), command)
+            killed_after(moment, command)
             maps = []
             if target.exists():
                 run("dbcheck", target)
@@ -147,10 +153,10 @@ def killed_edit(folder, name, base, command):
     new = state_of(area)
     require(new > old, "the edit made no new state")
     found = {old: 0, new: 0}
-    for _ in range(KILLS // 2):
+    for moment in spread(moments, KILLS // 2, 1.3 * whole):
         shutil.rmtree(area)
         shutil.copytree(base, area)
-        killed_after(moments.uniform(0, 1.3 * whole), [program("dbbuild"), *command(area)])
+        killed_after(moment, [program("dbbuild"), *command(area)])
         run("dbcheck", area)
         require(run("dbbuild", "info", area, "--digest").out == digest, "the terrain is another")
         state = state_of(area)
@@ -190,9 +196,9 @@ def a_killed_view_leaves_no_picture_or_a_whole_one(folder):
     command = [program("dbview"), area, "-o", picture, "-q"]
     whole = duration(command)
     wanted = picture.read_bytes()
-    for _ in range(KILLS):
+    for moment in spread(moments, KILLS, 1.05 * whole):
         picture.unlink(missing_ok=True)
-        killed_after(moments.uniform(0, 1.05 * whole), command)
+        killed_after(moment, command)
         require(not picture.exists() or picture.read_bytes() == wanted, "half a picture")
 
 
