@@ -23,6 +23,12 @@ Status writeAndSync(const std::string& path, std::span<const std::byte> bytes) {
   return file->close();
 }
 
+// Of writing: about the file that was asked for, whose temporary name nobody knows.
+Error aboutTarget(Error error, const std::string& path) {
+  error.where = path;
+  return error;
+}
+
 }  // namespace
 
 Status checkOutput(const std::string& path, bool overwrite) {
@@ -50,7 +56,8 @@ Status writeOutput(const std::string& path, std::span<const std::byte> bytes, bo
   const std::string temporary = temporaryName(path);
   // Of a process that had our number and died.
   if (const Result<PathType> type = files.typeOf(temporary); type.ok() && type.value() == PathType::kFile) {
-    DELTAZ_TRY(files.removeFile(temporary));
+    if (const Status removed = files.removeFile(temporary); !removed.ok())
+      return aboutTarget(removed.error(), path);
   }
   Status status = writeAndSync(temporary, bytes);
   if (status.ok())
@@ -58,7 +65,7 @@ Status writeOutput(const std::string& path, std::span<const std::byte> bytes, bo
   if (!status.ok()) {
     // The first failure is the one to report; a temporary file that was never made cannot be removed either.
     ::unlink(temporary.c_str());
-    return status;
+    return aboutTarget(status.error(), path);
   }
   return files.syncDirectory(parentPath(path));
 }

@@ -45,5 +45,15 @@ TEST(OutputFile, places_that_cannot_be_written_are_named) {
   EXPECT_EQ(checkOutput(folder.path(), true).error().kind, ErrorKind::kUsage);
 }
 
+// The root user may write into every folder, but /proc makes no files for anybody.
+TEST(OutputFile, failures_are_told_of_the_file_that_was_asked_for) {
+  for (const char* path : {"/proc/x.png", "/dev/full"}) {
+    const Status status = writeOutput(path, "text", true);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().where, path);
+    EXPECT_EQ(status.error().message().find("tmp-"), std::string::npos) << status.error().message();
+  }
+}
+
 }  // namespace
 }  // namespace deltaz
