@@ -192,7 +192,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
   report->sub_images = ars::subImageCount(width, height);
   report->passes = options.passes;
   report->timed = options.timed;
-  report->settings = describeArsOptions(options);
+  report->settings = effectiveArsOptions(options);
   report->pretiler = frame.counts;
   for (const ars::TriangleBatch& batch : frame.stream.batches) {
     if (batch.pass == 0 && batch.phase == ars::DrawPhase::kBackground)

@@ -23,7 +23,7 @@ struct Frame {
   int picture_width = 0, picture_height = 0;  // samples
   int sub_images = 0, passes = 0;
   bool timed = false;
-  std::string settings;          // as parseArsOptions reads them
+  std::string settings;          // all of them, as parseArsOptions reads them
   PretilerCounts pretiler;       // of all sub-images
   std::uint64_t background = 0;  // triangles of it, a pass
   std::vector<FrameRun> runs;    // by sub-image, then pass

@@ -16,8 +16,8 @@ namespace {
 
 using ars::MachineConfiguration;
 
-Error badValue(const ArsKey& key, std::string_view value) {
-  return usageError(fmt::format("--ars {}", key.name), fmt::format("'{}' is no value of it", value), {},
+Error badValue(std::string_view option, const ArsKey& key, std::string_view value) {
+  return usageError(fmt::format("{} {}", option, key.name), fmt::format("'{}' is no value of it", value), {},
                     fmt::format("Give {}", key.values));
 }
 
@@ -251,15 +251,16 @@ std::span<const ArsKey> arsKeys() {
   return keys;
 }
 
-Status setArsOption(std::string_view key, std::string_view value, ArsOptions& options) {
+Status setArsOption(std::string_view key, std::string_view value, ArsOptions& options,
+                    std::string_view option) {
   for (const Setting& setting : settings()) {
     if (setting.key.name != key) continue;
-    if (!setting.set(value, options)) return badValue(setting.key, value);
+    if (!setting.set(value, options)) return badValue(option, setting.key, value);
     return Success{};
   }
   std::vector<std::string> names;
   for (const ArsKey& each : arsKeys()) names.emplace_back(each.name);
-  return usageError("--ars", fmt::format("there is no key '{}'", key), nearNamesText(key, names),
+  return usageError(std::string(option), fmt::format("there is no key '{}'", key), nearNamesText(key, names),
                     "See dbview(1) for the keys and their values");
 }
 
@@ -286,6 +287,15 @@ Result<ArsOptions> parseArsOptions(std::string_view text, ArsOptions options) {
   DELTAZ_TRY(ars::validate(options.machine));
   DELTAZ_TRY(ars::checkNumberProfile(options.tiler.numbers));
   return options;
+}
+
+std::string effectiveArsOptions(const ArsOptions& options) {
+  ArsOptions effective = options;
+  effective.machine.buffers = ars::bufferCount(options.machine);
+  std::string text;
+  for (const Setting& setting : settings())
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", setting.key.name, setting.get(effective));
+  return text;
 }
 
 std::string describeArsOptions(const ArsOptions& options) {

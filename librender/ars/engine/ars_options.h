@@ -36,10 +36,13 @@ std::span<const ArsKey> arsKeys();
 // "key=value,key=value" over `options`. kUsage names the key, its values and what is near a key there is none
 // of; the machine that comes out is valid.
 Result<ArsOptions> parseArsOptions(std::string_view text, ArsOptions options = {});
-// One key and its value; the machine may not be valid yet.
-Status setArsOption(std::string_view key, std::string_view value, ArsOptions& options);
+// One key and its value; the machine may not be valid yet. Errors name `option`, where the key was given.
+Status setArsOption(std::string_view key, std::string_view value, ArsOptions& options,
+                    std::string_view option = "--ars");
 
 // What differs from the report's machine, as parseArsOptions reads it; empty if nothing does.
 std::string describeArsOptions(const ArsOptions& options);
+// Every setting as it takes effect, likewise: of buffers their number, not that it goes by the tilers.
+std::string effectiveArsOptions(const ArsOptions& options);
 
 }  // namespace deltaz

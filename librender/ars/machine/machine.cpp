@@ -10,10 +10,6 @@ namespace deltaz::ars {
 
 namespace {
 
-int bufferCount(const MachineConfiguration& configuration) {
-  return configuration.buffers == kOneBufferMoreThanTilers ? configuration.tilers + 1 : configuration.buffers;
-}
-
 TilerPipelineTiming timingOf(const MachineConfiguration& configuration) {
   TilerPipelineTiming timing;
   timing.transfer = Picoseconds{kTriangleWordCount} * configuration.word_transfer * kNanosecond;

@@ -23,6 +23,10 @@ Status powerOfTwo(const char* what, int value, int most) {
 
 }  // namespace
 
+int bufferCount(const MachineConfiguration& configuration) {
+  return configuration.buffers == kOneBufferMoreThanTilers ? configuration.tilers + 1 : configuration.buffers;
+}
+
 Status validate(const MachineConfiguration& configuration) {
   DELTAZ_TRY(powerOfTwo("tilers", configuration.tilers, kMaximumTilers));
   DELTAZ_TRY(powerOfTwo("memories", configuration.memories, kMaximumMemories));

@@ -46,6 +46,9 @@ struct MachineConfiguration {
   bool barriers = true;
 };
 
+// The host's buffers, of which there may be one more than tilers.
+int bufferCount(const MachineConfiguration& configuration);
+
 // kUsage if a value is out of its range, or if no tiler is in service.
 Status validate(const MachineConfiguration& configuration);
 

@@ -1,5 +1,6 @@
 #include "librender/ars/engine/ars_options.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -30,6 +31,16 @@ TEST(ArsOptions, come_back_from_their_description) {
   EXPECT_EQ(options.tiler.numbers.depth.mantissa_bits, 12);
   EXPECT_EQ(describeArsOptions(options), text);
   EXPECT_EQ(describeArsOptions(parseArsOptions(describeArsOptions(options)).value()), text);
+}
+
+// Whoever reads statistics need not know the report's machine.
+TEST(ArsOptions, all_that_take_effect_are_told) {
+  const std::string text = effectiveArsOptions({});
+  for (const ArsKey& key : arsKeys())
+    EXPECT_NE(("," + text).find(fmt::format(",{}=", key.name)), std::string::npos) << key.name;
+  EXPECT_NE(text.find("tilers=4,memories=8,unavailable=none,mode=scramble,"), std::string::npos) << text;
+  EXPECT_NE(text.find(",buffers=5,"), std::string::npos) << text;
+  EXPECT_EQ(effectiveArsOptions(parseArsOptions(text).value()), text);
 }
 
 // Every key has a value that can be set, and refuses one that cannot.
