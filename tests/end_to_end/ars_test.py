@@ -22,6 +22,7 @@ def statistics_add_up(folder):
     run("dbview", area, *VIEW, "--stats", folder / "stats.json", "-o", folder / "a.png")
     frame = strict_json((folder / "stats.json").read_text())["frames"][0]
     machine = frame["ars"]
+    require("tilers=4" in machine["settings"] and "buffers=5" in machine["settings"], machine["settings"])
     require(machine["passes"] == 3 and len(machine["runs"]) == 3, machine["passes"])
     triangles = frame["triangles"]
     require(triangles["in"] == sum(triangles[fate] for fate in ("back_facing", "clipped", "no_sample", "drawn")), triangles)
@@ -38,6 +39,15 @@ def a_recorded_stream_plays_on_other_machines(folder):
     one, four = swept["rows"]
     require(3 < one["frame_ms"] / four["frame_ms"] < 4.1, swept)
     require(one["pixels"] == four["pixels"], swept)
+    # Small triangles: tilers wait for set-up, and a quarter of the triangles takes each of four a quarter as long.
+    require(one["limit"] == four["limit"] == "set-up", swept)
+    require(3.9 < one["stages_ms"]["set-up"] / four["stages_ms"]["set-up"] < 4.1, swept)
+    for row in (one, four):
+        require(max(row["stages_ms"], key=row["stages_ms"].get) == row["limit"], row)
+        require(row["stages_ms"]["scan-out"] == row["reading_ms"], row)
+        require(all(row["stages_ms"][stage] <= row["frame_ms"] for stage in row["stages_ms"] if stage not in ("host", "scan-out")), row)
+    unknown = run("dbview", "ars-sweep", folder / "frame.ars", "--key", "tilres", "--values", "1", expect=2)
+    require("--key" in unknown.err and "--ars" not in unknown.err and "tilers" in unknown.err, unknown.err)
     xml.etree.ElementTree.parse(folder / "sweep.svg")
     damaged = bytearray((folder / "frame.ars").read_bytes())
     damaged[len(damaged) // 2] ^= 1

@@ -10,6 +10,7 @@
 
 #include "formats/file_system.h"
 #include "librender/ars/engine/stream_player.h"
+#include "librender/ars/machine/frame_limit.h"
 #include "librender/scene/arena.h"
 #include "tools/common/json_output.h"
 #include "tools/common/line_svg.h"
@@ -35,6 +36,7 @@ struct ArsSweepRow {
   double peak_signal_to_noise = 0;  // dB, against the judge
   int triangle_bits = 0, pixel_bits = 0;
   std::uint64_t pixels = 0;
+  ars::StageTimes stages;  // of all runs
 };
 
 std::vector<std::string> valuesOf(const std::string& text) {
@@ -94,6 +96,7 @@ ArsSweepRow rowOf(const std::string& value, const ArsOptions& options, const ars
   ars::CycleCounts cycles{};
   double lost = 0, tree_time = 0, blocked = 0, tiler_time = 0;
   for (const ars::FrameRun& run : played.runs) {
+    row.stages += ars::stageTimes(run.statistics, options.machine);
     row.longest_queue = std::max(row.longest_queue, run.statistics.tree.longestQueue());
     row.pixels += static_cast<std::uint64_t>(run.statistics.pixels());
     for (std::size_t k = 0; k < cycles.size(); ++k) cycles[k] += run.memory.cycles[k];
@@ -117,12 +120,22 @@ ArsSweepRow rowOf(const std::string& value, const ArsOptions& options, const ars
   return row;
 }
 
+Json stagesJson(const ars::StageTimes& stages) {
+  Json json;
+  for (std::size_t k = 0; k < ars::kFrameStages; ++k)
+    json[std::string(ars::frameStageName(static_cast<ars::FrameStage>(k)))] =
+        static_cast<double>(stages.time[k]) / static_cast<double>(ars::kMillisecond);
+  return json;
+}
+
 Json rowsJson(const std::vector<ArsSweepRow>& rows) {
   Json list = Json::array();
   for (const ArsSweepRow& row : rows) {
     list.push_back({{"value", row.value},
                     {"frame_ms", row.frame_ms},
                     {"reading_ms", row.reading_ms},
+                    {"limit", ars::frameStageName(row.stages.limit())},
+                    {"stages_ms", stagesJson(row.stages)},
                     {"pixels", row.pixels},
                     {"pixels_per_100ns", row.pixels_per_cycle},
                     {"longest_queue", row.longest_queue},
@@ -137,14 +150,14 @@ Json rowsJson(const std::vector<ArsSweepRow>& rows) {
 }
 
 void printRows(const std::string& key, const std::vector<ArsSweepRow>& rows) {
-  std::cout << fmt::format("{:>16} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}\n", key,
-                           "frame ms", "px/100 ns", "longest q", "mem ns", "lost %", "block %", "PSNR dB",
-                           "bits/tri", "bits/px");
+  std::cout << fmt::format("{:>16} {:>10} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}\n", key,
+                           "frame ms", "limit", "px/100 ns", "longest q", "mem ns", "lost %", "block %",
+                           "PSNR dB", "bits/tri", "bits/px");
   for (const ArsSweepRow& row : rows) {
     std::cout << fmt::format(
-        "{:>16} {:>10.3f} {:>10.3f} {:>10} {:>8.1f} {:>8.2f} {:>8.2f} {:>9} {:>9} {:>9}\n", row.value,
-        row.frame_ms, row.pixels_per_cycle, row.longest_queue, row.memory_cycle_ns, row.lost_percent,
-        row.blocked_percent,
+        "{:>16} {:>10.3f} {:>8} {:>10.3f} {:>10} {:>8.1f} {:>8.2f} {:>8.2f} {:>9} {:>9} {:>9}\n", row.value,
+        row.frame_ms, ars::frameStageName(row.stages.limit()), row.pixels_per_cycle, row.longest_queue,
+        row.memory_cycle_ns, row.lost_percent, row.blocked_percent,
         std::isfinite(row.peak_signal_to_noise) ? fmt::format("{:.1f}", row.peak_signal_to_noise) : "same",
         row.triangle_bits, row.pixel_bits);
   }
@@ -214,7 +227,7 @@ Result<int> runArsSweep(const ArsSweepOptions& options) {
         values.begin() + static_cast<std::ptrdiff_t>(n))
       return usageError("--values", fmt::format("{} stands there twice", value), {}, "Give each value once");
     ArsOptions machine = base;
-    DELTAZ_TRY(setArsOption(options.key, value, machine));
+    DELTAZ_TRY(setArsOption(options.key, value, machine, "--key"));
     DELTAZ_TRY(ars::validate(machine.machine));
     DELTAZ_TRY(ars::checkNumberProfile(machine.tiler.numbers));
     machines.push_back(std::move(machine));
