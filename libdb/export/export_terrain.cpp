@@ -122,7 +122,7 @@ Result<Storage> storageOf(const RawGrid& grid, int level, const std::string& tar
   storage.geotransform = geotransformOf(header);
   if (header.sources.empty() || header.resampling) {
     // No source has these posts: metres, in a type that holds them.
-    storage.like.data_type = std::string(header.resampling ? "Float32" : "Int32");
+    storage.like.data_type = header.resampling ? "Float32" : "Int32";
     storage.like.unit = "m";
     if (!header.sentinels.empty()) storage.like.nodata = header.sentinels.front();
   } else {
