@@ -182,7 +182,11 @@ Status Publication::beginNew() {
     folder_ = joinPath(parent, fmt::format("{}{}-{}", prefix, ::getpid(), attempt));
     DELTAZ_TRY_ASSIGN(const PathType type, files_->typeOf(folder_));
     if (type != PathType::kAbsent) continue;
-    DELTAZ_TRY(files_->makeDirectory(folder_));
+    if (Status made = files_->makeDirectory(folder_); !made.ok()) {
+      Error error = made.error();
+      error.where = target_;  // the name that was asked for
+      return error;
+    }
     made_folder_ = true;
     const std::string lock_path = joinPath(folder_, std::string(kLockFileName));
     Result<std::unique_ptr<FileLock>> lock = files_->lock(lock_path);

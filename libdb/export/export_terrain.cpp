@@ -231,6 +231,15 @@ Status writeRaster(const RawGrid& grid, int level, const std::string& path, cons
   return Success{};
 }
 
+// Of writing: about the file that was asked for. GDAL's own words have the temporary name in them.
+Error aboutTarget(Error error, const std::string& temporary, const std::string& target) {
+  error.where = target;
+  for (std::size_t at = error.why.find(temporary); at != std::string::npos;
+       at = error.why.find(temporary, at + target.size()))
+    error.why.replace(at, temporary.size(), target);
+  return error;
+}
+
 }  // namespace
 
 Result<RawGrid> readGrid(const Database& database, int grid_number, int level) {
@@ -327,7 +336,7 @@ Status exportTerrain(const Database& database, const std::string& target, const 
     }
     if (!written.ok()) {
       (void)files.removeFile(temporary);
-      return written;
+      return aboutTarget(written.error(), temporary, target);
     }
     return files.syncDirectory(parentPath(target));
   } catch (const std::exception& exception) {
