@@ -28,6 +28,9 @@ def statistics_add_up(folder):
     require(triangles["in"] == sum(triangles[fate] for fate in ("back_facing", "clipped", "no_sample", "drawn")), triangles)
     for each in machine["runs"]:
         require(sum(each["cycles"].values()) == each["board"]["pixels"], each["cycles"])
+    first = [each for each in machine["runs"] if each["pass"] == 0]
+    foreground = sum(each["board"]["pixels"] - each["cycles"]["background"] for each in first)
+    require(frame["samples"]["tested"] == foreground, frame["samples"])
     require(machine["drawing_ms"] > 0 and machine["reading_ms"] > 0, machine)
 
 

@@ -25,10 +25,11 @@ namespace {
 struct Frame {
   Picture picture;
   std::vector<FrameStatistics> repeats;
+  ars::TriangleStream recorded;  // of the first, if it is asked for
 };
 
 // Renders as often as asked. A frame that comes out differently the second time breaks a promise of the
-// engines.
+// engines. The first leaves its stream where one is to be recorded.
 Result<Frame> renderFrame(const Database& database, const View& view, const CommonOptions& common) {
   ProgressReporter progress(progressMode(common), "dbview", std::cerr);
   const std::unique_ptr<Engine> engine = makeEngine(view.engine);
@@ -36,7 +37,14 @@ Result<Frame> renderFrame(const Database& database, const View& view, const Comm
   for (int i = 0; i < view.repeat; ++i) {
     progress.report("rendering", static_cast<double>(i) / view.repeat);
     FrameStatistics statistics;
-    DELTAZ_TRY_ASSIGN(Picture picture, engine->render(database, view.render, statistics));
+    Picture picture;
+    if (i == 0 && !view.record_path.empty()) {
+      DELTAZ_TRY_ASSIGN(RecordedFrame made, renderAndRecord(database, view.render, statistics));
+      picture = std::move(made.picture);
+      frame.recorded = std::move(made.stream);
+    } else {
+      DELTAZ_TRY_ASSIGN(picture, engine->render(database, view.render, statistics));
+    }
     if (const std::string loss = findLoss(statistics); !loss.empty())
       return internalError(engineName(view.engine), loss);
     frame.repeats.push_back(statistics);
@@ -84,8 +92,7 @@ Result<int> run(const ViewOptions& options) {
   }
   std::vector<std::byte> stream;
   if (!view.record_path.empty()) {
-    DELTAZ_TRY_ASSIGN(const ars::TriangleStream captured, captureStream(database, view.render));
-    DELTAZ_TRY_ASSIGN(stream, ars::encodeTriangleStream(captured));
+    DELTAZ_TRY_ASSIGN(stream, ars::encodeTriangleStream(frame.recorded));
   }
   // The picture comes last: where it stands, everything asked for does.
   const bool overwrite = options.common.overwrite;

@@ -11,8 +11,6 @@
 #include "librender/ars/engine/ars_frame.h"
 #include "librender/ars/engine/frame_stream.h"
 #include "librender/ars/engine/stream_player.h"
-#include "librender/ars/machine/triangle_source.h"
-#include "librender/ars/tiler/span_tiler.h"
 #include "librender/scene/arena.h"
 #include "librender/scene/stopwatch.h"
 
@@ -80,52 +78,6 @@ Result<SampledScene> sampledScene(const Database& database, const RenderOptions&
   return SampledScene{raster, std::move(environment), std::move(triangles)};
 }
 
-// Whose pixel is seen: the machine's rule, nearest first come, on triangles with names. Also which triangles
-// have pixels at all, and how many.
-struct Owners {
-  std::vector<std::uint8_t> tiled;  // by triangle of the scene
-  std::uint64_t pixels = 0;
-};
-
-Result<Owners> findOwners(const ars::FrameStream& frame, const ArsOptions& options, std::size_t triangles,
-                          std::vector<std::uint32_t>& owner) {
-  const ars::TilerConfiguration tiler = ars::tilerOf(frame.stream, options);
-  const int width = frame.stream.picture_width, height = frame.stream.picture_height;
-  Owners owners;
-  owners.tiled.assign(triangles, 0);
-  std::vector<ars::DepthWord> seen(owner.size());
-  std::vector<ars::PixelPacket> pixels;
-  const auto sub_images =
-      static_cast<std::uint32_t>(ars::subImageCount(frame.stream.picture_width, frame.stream.picture_height));
-  for (std::uint32_t n = 0; n < sub_images; ++n) {
-    DELTAZ_TRY_ASSIGN(const ars::TriangleSource source, ars::triangleSource(frame.stream, n, 0, tiler));
-    std::vector<std::uint32_t> names;
-    for (std::size_t b = 0; b < frame.stream.batches.size(); ++b) {
-      if (frame.stream.batches[b].sub_image == n && frame.stream.batches[b].pass == 0)
-        names.insert(names.end(), frame.owner[b].begin(), frame.owner[b].end());
-    }
-    const ars::SubImageOrigin origin = ars::subImageOrigin(n, frame.stream.picture_width);
-    for (std::size_t t = 0; t < names.size(); ++t) {
-      if (names[t] == ars::kOfBackground) continue;
-      pixels.clear();
-      source.pixels(t, pixels);
-      owners.pixels += pixels.size();
-      if (!pixels.empty()) owners.tiled[names[t]] = 1;
-      for (const ars::PixelPacket& pixel : pixels) {
-        // Tolerances reach beyond a picture that does not fill the screen.
-        const int i = origin.i + pixel.i, j = origin.j + pixel.j;
-        if (i >= height || j >= width) continue;
-        const std::size_t at =
-            static_cast<std::size_t>(i) * static_cast<std::size_t>(width) + static_cast<std::size_t>(j);
-        if (seen[at].written && pixel.depth <= seen[at].depth) continue;
-        seen[at] = {pixel.depth, true};
-        owner[at] = names[t];
-      }
-    }
-  }
-  return owners;
-}
-
 // The picture that is shown of the samples.
 Picture shownPicture(const SampledScene& scene, const RenderOptions& asked, const ars::DepthFormat& depths,
                      const ars::PlayedStream& samples, const std::vector<std::uint32_t>& owners) {
@@ -164,26 +116,26 @@ Picture shownPicture(const SampledScene& scene, const RenderOptions& asked, cons
   return picture;
 }
 
-void countTriangles(const ars::FrameStream& frame, const Owners& owners, FrameStatistics::Triangles& counts) {
-  for (std::size_t t = 0; t < owners.tiled.size(); ++t) {
-    ++(owners.tiled[t] != 0 ? counts.drawn : frame.on_screen[t] != 0 ? counts.no_sample : counts.clipped);
-  }
+void countTriangles(const ars::FrameStream& frame, const ars::StreamNames& seen,
+                    FrameStatistics::Triangles& counts) {
+  std::vector<std::uint8_t> tiled(frame.on_screen.size());
+  for (const std::uint32_t name : seen.tiled) tiled[name] = 1;
+  for (std::size_t t = 0; t < tiled.size(); ++t)
+    ++(tiled[t] != 0 ? counts.drawn : frame.on_screen[t] != 0 ? counts.no_sample : counts.clipped);
 }
 
+// Leaves the stream in `recorded` if that is asked for.
 Result<Picture> renderInArena(const Database& database, const RenderOptions& asked,
-                              FrameStatistics& statistics) {
+                              FrameStatistics& statistics, ars::TriangleStream* recorded) {
   Stopwatch watch;
   const std::uint64_t bytes_before = database.bytesRead();
   DELTAZ_TRY_ASSIGN(const SampledScene scene, sampledScene(database, asked, statistics));
   statistics.bytes_read = database.bytesRead() - bytes_before;
   watch.lap();
   const ArsOptions& options = asked.ars;
-  const ars::FrameStream frame = ars::makeFrameStream(scene.triangles, scene.environment, options);
+  ars::FrameStream frame = ars::makeFrameStream(scene.triangles, scene.environment, options);
 
   const int width = frame.stream.picture_width, height = frame.stream.picture_height;
-  std::vector<std::uint32_t> owner(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-                                   ars::kOfBackground);
-  DELTAZ_TRY_ASSIGN(const Owners owners, findOwners(frame, options, scene.triangles.triangles.size(), owner));
   statistics.milliseconds.objects += watch.lap();
 
   auto report = std::make_shared<ars::Frame>();
@@ -198,17 +150,18 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
     if (batch.pass == 0 && batch.phase == ars::DrawPhase::kBackground)
       report->background += batch.triangles.size();
   }
-  DELTAZ_TRY_ASSIGN(ars::PlayedStream samples, ars::playStream(frame.stream, options));
+  ars::StreamNames seen;
+  DELTAZ_TRY_ASSIGN(ars::PlayedStream samples, ars::playStream(frame.stream, options, frame.owner, seen));
   report->runs = std::move(samples.runs);
   report->drawing = samples.drawing;
   report->reading = samples.reading;
   statistics.milliseconds.raster = watch.lap();
 
-  Picture picture = shownPicture(scene, asked, ars::frameNumbers(options).depth, samples, owner);
-  countTriangles(frame, owners, statistics.triangles);
-  statistics.samples.tested = owners.pixels;
-  statistics.samples.shaded = static_cast<std::uint64_t>(
-      std::count_if(owner.begin(), owner.end(), [](std::uint32_t n) { return n != ars::kOfBackground; }));
+  Picture picture = shownPicture(scene, asked, ars::frameNumbers(options).depth, samples, seen.owner);
+  countTriangles(frame, seen, statistics.triangles);
+  statistics.samples.tested = seen.pixels;
+  statistics.samples.shaded = static_cast<std::uint64_t>(std::count_if(
+      seen.owner.begin(), seen.owner.end(), [](std::uint32_t n) { return n != ars::kOfBackground; }));
   for (const ars::FrameRun& run : report->runs) {
     if (run.pass != 0) continue;
     for (const ars::MemoryCycle cycle : {ars::MemoryCycle::kInitialize, ars::MemoryCycle::kLookAheadWrite,
@@ -220,6 +173,7 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
     statistics.depth_complexity =
         static_cast<double>(statistics.samples.tested) / static_cast<double>(statistics.samples.shaded);
   statistics.ars = std::move(report);
+  if (recorded != nullptr) *recorded = std::move(frame.stream);
   statistics.milliseconds.resolve = watch.lap();
   statistics.milliseconds.total = watch.total();
   return picture;
@@ -230,18 +184,18 @@ Result<Picture> renderInArena(const Database& database, const RenderOptions& ask
 Result<Picture> ArsEngine::render(const Database& database, const RenderOptions& options,
                                   FrameStatistics& statistics) const {
   statistics = {};
-  return drawOnThreads(options.threads, [&] { return renderInArena(database, options, statistics); });
+  return drawOnThreads(options.threads,
+                       [&] { return renderInArena(database, options, statistics, nullptr); });
 }
 
-Result<ars::TriangleStream> captureStream(const Database& database, const RenderOptions& options) {
-  ars::TriangleStream stream;
-  DELTAZ_TRY(drawOnThreads(options.threads, [&]() -> Result<Picture> {
-    FrameStatistics statistics;
-    DELTAZ_TRY_ASSIGN(const SampledScene scene, sampledScene(database, options, statistics));
-    stream = ars::makeFrameStream(scene.triangles, scene.environment, options.ars).stream;
-    return Picture{};
-  }));
-  return stream;
+Result<RecordedFrame> renderAndRecord(const Database& database, const RenderOptions& options,
+                                      FrameStatistics& statistics) {
+  statistics = {};
+  RecordedFrame frame;
+  DELTAZ_TRY_ASSIGN(frame.picture, drawOnThreads(options.threads, [&] {
+                      return renderInArena(database, options, statistics, &frame.stream);
+                    }));
+  return frame;
 }
 
 }  // namespace deltaz

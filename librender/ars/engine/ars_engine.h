@@ -19,7 +19,12 @@ class ArsEngine final : public Engine {
                          FrameStatistics& statistics) const override;
 };
 
-// The stream that a view would be drawn from, to be recorded.
-Result<ars::TriangleStream> captureStream(const Database& database, const RenderOptions& options);
+// The same, and the stream that it was drawn from.
+struct RecordedFrame {
+  Picture picture;
+  ars::TriangleStream stream;
+};
+Result<RecordedFrame> renderAndRecord(const Database& database, const RenderOptions& options,
+                                      FrameStatistics& statistics);
 
 }  // namespace deltaz

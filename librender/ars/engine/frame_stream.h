@@ -1,12 +1,13 @@
 // A view's triangles as the host would send them: pretiled, encoded, sub-image by sub-image and pass by pass.
 //
-// Thread-safety: pure functions. Cost: every triangle is looked at for every sub-image.
+// Thread-safety: pure functions. Cost: that of the triangles each sub-image shows some of.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "librender/ars/engine/ars_options.h"
+#include "librender/ars/engine/pixel_names.h"
 #include "librender/ars/engine/scene_triangles.h"
 #include "librender/ars/pretiler/pretiler.h"
 #include "librender/ars/words/triangle_stream.h"
@@ -15,8 +16,6 @@ namespace deltaz::ars {
 
 // The numbers of the options, with depths at the hither plane in the top octave.
 NumberProfile frameNumbers(const ArsOptions& options);
-
-inline constexpr std::uint32_t kOfBackground = 0xFFFFFFFF;
 
 struct FrameStream {
   TriangleStream stream;  // with its sources

@@ -34,4 +34,17 @@ TilerConfiguration tilerOf(const TriangleStream& stream, const ArsOptions& optio
 
 Result<PlayedStream> playStream(const TriangleStream& stream, const ArsOptions& options);
 
+// Whose pixels are seen (pixel_names.h).
+struct StreamNames {
+  std::vector<std::uint32_t> owner;  // by pixel; kOfBackground where nothing with a name is
+  std::vector<std::uint32_t> tiled;  // names of triangles that have pixels; a name may stand there often
+  std::uint64_t pixels = 0;          // of all triangles with names
+};
+
+// The same, and the names of what is seen: `names` has one for each triangle of each batch. In simulated time
+// the machine's samples of the first pass are named as they are taken; without, they are sampled once more,
+// because its vectors of whole lines have no room for names and are far quicker without.
+Result<PlayedStream> playStream(const TriangleStream& stream, const ArsOptions& options,
+                                const std::vector<std::vector<std::uint32_t>>& names, StreamNames& seen);
+
 }  // namespace deltaz::ars

@@ -211,18 +211,36 @@ TEST(ArsEngine, refuses_what_the_machine_has_no_hardware_for) {
 TEST(ArsEngine, records_the_stream_it_draws) {
   const MemoryDatabase area = makeDatabase(smallArea());
   const RenderOptions options = viewOf(area.database, 100, 80);
-  const Result<ars::TriangleStream> stream = captureStream(area.database, options);
-  ASSERT_TRUE(stream.ok());
-  const Result<std::vector<std::byte>> bytes = ars::encodeTriangleStream(stream.value());
+  FrameStatistics statistics;
+  const Result<RecordedFrame> frame = renderAndRecord(area.database, options, statistics);
+  ASSERT_TRUE(frame.ok());
+  const Result<std::vector<std::byte>> bytes = ars::encodeTriangleStream(frame.value().stream);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   const Result<ars::TriangleStream> back = ars::decodeTriangleStream(bytes.value(), "memory");
   ASSERT_TRUE(back.ok()) << back.error().message();
-  FrameStatistics statistics;
-  (void)draw(EngineKind::kArs, area.database, options, statistics);
   std::uint64_t triangles = 0, sent = 0;
   for (const ars::TriangleBatch& batch : back.value().batches) triangles += batch.triangles.size();
   for (const ars::FrameRun& run : statistics.ars->runs) sent += run.triangles;
   EXPECT_EQ(triangles, sent);
+  EXPECT_EQ(frame.value().picture.rgb, draw(EngineKind::kArs, area.database, options, statistics).rgb);
+}
+
+// Names are taken from the timed run's samples, or without clocks from the triangles themselves.
+TEST(ArsEngine, names_the_same_triangles_with_and_without_clocks) {
+  const MemoryDatabase area = makeDatabase(smallArea());
+  RenderOptions options = viewOf(area.database, 600, 530);  // four sub-images
+  options.keep_triangle_ids = true;
+  FrameStatistics timed, untimed;
+  const Picture with = draw(EngineKind::kArs, area.database, options, timed);
+  options.ars.timed = false;
+  const Picture without = draw(EngineKind::kArs, area.database, options, untimed);
+  EXPECT_EQ(with.triangle, without.triangle);
+  EXPECT_EQ(with.surface, without.surface);
+  EXPECT_EQ(timed.triangles.drawn, untimed.triangles.drawn);
+  EXPECT_EQ(timed.triangles.no_sample, untimed.triangles.no_sample);
+  EXPECT_EQ(timed.samples.tested, untimed.samples.tested);
+  EXPECT_GT(timed.samples.tested, timed.samples.shaded);
+  EXPECT_EQ(timed.samples.shaded, untimed.samples.shaded);
 }
 
 }  // namespace
