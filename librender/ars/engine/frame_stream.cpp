@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "librender/ars/engine/sub_image_bins.h"
 #include "librender/ars/tiler/triangle_encoder.h"
 #include "librender/ars/words/pixel_packet.h"
 #include "librender/scene/view_volume.h"
@@ -109,6 +110,8 @@ FrameStream makeFrameStream(const SceneTriangles& scene, const Environment& envi
   frame.stream.has_sources = true;
   frame.on_screen.assign(scene.triangles.size(), 0);
   StreamWriter writer(options, frame);
+  const SubImageBins bins = binTriangles(scene.triangles, view);
+  frame.counts = bins.left_out;
   for (int n = 0; n < subImageCount(view.width, view.height); ++n) {
     const auto sub_image = static_cast<std::uint32_t>(n);
     const SubImageOrigin origin = subImageOrigin(sub_image, view.width);
@@ -121,12 +124,11 @@ FrameStream makeFrameStream(const SceneTriangles& scene, const Environment& envi
     const Pretiler pretiler(screen);
     std::vector<Piece> pieces;
     std::vector<ScreenTriangle> of_triangle;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const std::uint32_t t : bins.triangles[sub_image]) {
       of_triangle.clear();
       pretiler.process(scene.triangles[t], of_triangle, frame.counts);
       if (!of_triangle.empty()) frame.on_screen[t] = 1;
-      for (const ScreenTriangle& piece : of_triangle)
-        pieces.push_back({piece, static_cast<std::uint32_t>(t)});
+      for (const ScreenTriangle& piece : of_triangle) pieces.push_back({piece, t});
     }
     const std::vector<BackgroundTriangle> background =
         backgroundTriangles(environment, origin.i, origin.j, screen.lines, screen.pixels);
