@@ -160,7 +160,7 @@ def a_full_standard_output_ends_with_3(folder):
 def a_target_that_cannot_be_made_ends_with_3_and_is_named(folder):
     area, dem = build(folder), small_dem(folder)
     for command in (["dbbuild", "terrain", dem, "-o", "/proc/target"], ["dbbuild", "export", area, "-o", "/proc/target"],
-                    ["dbview", area, "--size", "40x30", "-o", "/proc/target"]):
+                    ["dbview", area, "--size", "40x30", "-o", "/proc/target.png"]):
         ended = run(*command, expect=3, words=["/proc/target"])
         require("tmp-" not in ended.err, ended)
 
