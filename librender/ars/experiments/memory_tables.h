@@ -1,6 +1,6 @@
-// The report's measurements of memories and distribution tree, made again (Tables 19 and 20, Figs 29, 84, 85,
-// 91, 92; report 4.3.3.3, 7.1.1, 7.1.3), and what the machine takes for a frame as large as its scenario's
-// (Table 25).
+// The report's measurements of memories and distribution tree, made again (Tables 19 and 20, Figs 29, 30, 84,
+// 85, 91, 92; report 4.3.3.3, 7.1.1, 7.1.3), and what the machine takes for a frame as large as its
+// scenario's (Table 25).
 //
 // Two thousand random triangles of some 122 pixels, as in Table 20, each facing the eye at a depth of its own
 // in one of three octaves: the report does not say what depths it drew, and three octaves give its mix of
@@ -29,6 +29,7 @@ TriangleSource memoryLoad(const MemoryLoad& load);
 std::vector<ReportRow> table19Rows();
 std::vector<ReportRow> table20Rows();
 std::vector<ReportRow> figure29Rows();
+std::vector<ReportRow> figure30Rows();
 std::vector<ReportRow> figure84And85Rows();
 std::vector<ReportRow> figure91And92Rows();
 std::vector<ReportRow> table25Rows();

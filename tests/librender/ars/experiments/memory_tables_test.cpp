@@ -1,6 +1,7 @@
 #include "librender/ars/experiments/memory_tables.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
@@ -69,6 +70,33 @@ TEST(MemoryTables, contention_is_the_reports_but_for_interleave_and_40_million_p
   EXPECT_GT(rows.at("figure91.interleave.100").ours, 10 * rows.at("figure91.interleave.25").ours);
   EXPECT_LT(rows.at("throughput.scramble").ratio().value(), 0.75);
   EXPECT_GT(rows.at("figure92.sequential.memory_3").ours, 80'000);
+}
+
+// Report 4.3.3.3: bursts cost some of the tilers, the more the fewer memories they fall on; a larger network
+// loses a larger share to bursts on as many memories.
+TEST(MemoryTables, bursts_leave_fewer_effective_tilers) {
+  const Rows rows = byId(figure30Rows());
+  EXPECT_EQ(rows.size(), 24u);
+  for (const char* kind : {"model", "tree"}) {
+    for (const int tilers : {2, 4, 8, 16}) {
+      double before = 0;
+      for (const int sigma : {1, 2, 3}) {
+        const double effective = rows.at(fmt::format("figure30.{}.sigma_{}.{}", kind, sigma, tilers)).ours;
+        EXPECT_GT(effective, 1) << kind << tilers;
+        EXPECT_LT(effective, tilers) << kind << tilers;
+        // In the smallest network a scatter goes round the end and is even at once.
+        if (tilers > 2) {
+          EXPECT_GT(effective, before) << kind << tilers;
+        }
+        before = effective;
+      }
+    }
+    const auto share = [&](int tilers) {
+      return rows.at(fmt::format("figure30.{}.sigma_2.{}", kind, tilers)).ours / tilers;
+    };
+    EXPECT_GT(share(4), share(8));
+    EXPECT_GT(share(8), share(16));
+  }
 }
 
 // Digest 13: 456,131 pixels, 60.0 ms undersampled, 53.1 ms oversampled, memories 9.6 ms.
