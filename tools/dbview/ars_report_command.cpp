@@ -11,6 +11,7 @@
 #include "librender/ars/experiments/memory_tables.h"
 #include "librender/ars/experiments/tiler_tables.h"
 #include "librender/ars/experiments/width_sweep.h"
+#include "librender/scenario/scenario_report.h"
 #include "tools/common/json_output.h"
 #include "tools/common/line_svg.h"
 #include "tools/common/output_file.h"
@@ -26,6 +27,7 @@ using ars::ReportRow;
 using ars::WidthPoint;
 
 constexpr int kLargestTriangles = 1'000'000;
+constexpr int kTimingRounds = 5;  // of Tables 28 and 29
 
 struct ArsReport {
   std::vector<ReportRow> rows;
@@ -139,6 +141,7 @@ std::string reportSvg(const ArsReport& report) {
   };
   constexpr Title kTitles[] = {
       {"figure29", "Fig 29: queues after a burst", "cycles", "pixels"},
+      {"figure30", "Fig 30: effective tilers in bursts", "tilers", "tilers"},
       {"figure84", "Fig 84: use of memory cycles", "triangles", "%"},
       {"figure85", "Fig 85: average memory cycle", "triangles", "ns"},
       {"figure90", "Fig 90: tiling efficiency if every sample is valid", "pixels a triangle", "%"},
@@ -203,6 +206,9 @@ Result<int> runArsReport(const ArsReportOptions& options) {
   append(report.rows, ars::correctionRows());
   progress.report("memories and distribution tree", 0.5);
   append(report.rows, ars::memoryReportRows());
+  progress.report("object processors and levels of detail", 0.7);
+  DELTAZ_TRY_ASSIGN(std::vector<ReportRow> of_scene, scenarioReportRows(kTimingRounds));
+  append(report.rows, std::move(of_scene));
   progress.report("widths of numbers", 0.8);
   report.widths = ars::sweepWidths(ars::grazingTerrain());
   append(report.rows, widthRows(report.widths));

@@ -10,9 +10,9 @@
 
 #include "librender/ars/engine/ars_frame.h"
 #include "librender/ars/engine/reference_comparison.h"
+#include "librender/scenario/airport_scene.h"
 #include "librender/scene/conservation.h"
 #include "librender/sweep/picture_error.h"
-#include "tests/bench/airport_scene.h"
 #include "tests/librender/test_databases.h"
 #include "tests/support/memory_file_system.h"
 
@@ -93,11 +93,11 @@ TEST(ArsEngine, shows_real_areas_as_the_reference_does_within_its_formats) {
 TEST(ArsEngine, shows_the_reports_scene_as_the_reference_does_within_its_formats) {
   MemoryFileSystem files;
   ASSERT_TRUE(files.makeDirectory("/ars").ok());
-  ASSERT_TRUE(bench::buildAirport(files, "/ars/airport.dz").ok());
+  ASSERT_TRUE(buildAirport(files, "/ars/airport.dz").ok());
   const Result<Database> database = Database::open(files, "/ars/airport.dz");
   ASSERT_TRUE(database.ok());
   RenderOptions options;
-  options.camera = bench::airportCamera(database.value(), ars::kScreenPixels, ars::kScreenLines).value();
+  options.camera = airportCamera(database.value(), ars::kScreenPixels, ars::kScreenLines).value();
   for (const bool oversample : {false, true}) {
     options.ars.oversample = oversample;
     expectExplained(database.value(), options);

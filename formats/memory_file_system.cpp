@@ -1,4 +1,4 @@
-#include "tests/support/memory_file_system.h"
+#include "formats/memory_file_system.h"
 
 #include <algorithm>
 #include <functional>

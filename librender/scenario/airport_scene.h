@@ -12,7 +12,7 @@
 #include "libdb/access/database.h"
 #include "librender/scene/camera.h"
 
-namespace deltaz::bench {
+namespace deltaz {
 
 inline constexpr std::int64_t kAirportColumns = 100, kAirportRows = 105;  // cells
 inline constexpr int kAircraft = 12, kAircraftTriangles = 300, kAircraftVertices = 152;
@@ -23,4 +23,4 @@ Status buildAirport(const FileSystem& files, const std::string& target);
 // Looking up the runway.
 Result<Camera> airportCamera(const Database& database, int width, int height);
 
-}  // namespace deltaz::bench
+}  // namespace deltaz

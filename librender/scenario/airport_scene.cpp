@@ -1,4 +1,4 @@
-#include "tests/bench/airport_scene.h"
+#include "librender/scenario/airport_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "libdb/build/build_terrain.h"
 #include "libdb/build/model_writer.h"
 #include "libdb/build/place_models.h"
-#include "tests/support/synthetic_grid.h"
+#include "libdb/source/synthetic_grid.h"
 
-namespace deltaz::bench {
+namespace deltaz {
 namespace {
 
 constexpr double kSouth = 47, kWest = 8;           // degrees
@@ -144,4 +144,4 @@ Result<Camera> airportCamera(const Database& database, int width, int height) {
   return camera;
 }
 
-}  // namespace deltaz::bench
+}  // namespace deltaz
