@@ -49,19 +49,19 @@ SubImageBins binTriangles(const std::vector<ViewTriangle>& triangles, const View
     std::iota(bins.triangles[0].begin(), bins.triangles[0].end(), 0U);
     return bins;
   }
-  const auto leaveOut = [&bins](std::uint64_t times, std::uint64_t PretilerCounts::*fate) {
+  const auto leave_out = [&bins](std::uint64_t times, std::uint64_t PretilerCounts::*fate) {
     bins.left_out.in += times;
     bins.left_out.*fate += times;
   };
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::array<ViewVertex, 3>& vertex = triangles[t].vertex;
     if (!std::all_of(vertex.begin(), vertex.end(), isFinite)) {
-      leaveOut(sub_images, &PretilerCounts::edge_on);
+      leave_out(sub_images, &PretilerCounts::edge_on);
       continue;
     }
     const auto [nearest, farthest] = std::minmax({vertex[0].u, vertex[1].u, vertex[2].u});
     if (farthest < kHither) {
-      leaveOut(sub_images, &PretilerCounts::before_hither);
+      leave_out(sub_images, &PretilerCounts::before_hither);
       continue;
     }
     // The few that the hither plane cuts may reach anywhere.
@@ -78,12 +78,13 @@ SubImageBins binTriangles(const std::vector<ViewTriangle>& triangles, const View
     std::uint64_t shown = 0;
     for (int line = lines.first; line <= lines.last; ++line) {
       for (int pixel = pixels.first; pixel <= pixels.last; ++pixel) {
-        bins.triangles[static_cast<std::size_t>(line * across + pixel)].push_back(
-            static_cast<std::uint32_t>(t));
+        bins.triangles[static_cast<std::size_t>(line) * static_cast<std::size_t>(across) +
+                       static_cast<std::size_t>(pixel)]
+            .push_back(static_cast<std::uint32_t>(t));
         ++shown;
       }
     }
-    leaveOut(sub_images - shown, &PretilerCounts::beside);
+    leave_out(sub_images - shown, &PretilerCounts::beside);
   }
   return bins;
 }

@@ -22,30 +22,30 @@ FrameStage StageTimes::limit() const {
 
 StageTimes stageTimes(const PassStatistics& statistics, const MachineConfiguration& configuration) {
   StageTimes times;
-  const auto atLeast = [&times](FrameStage stage, Picoseconds time) {
+  const auto at_least = [&times](FrameStage stage, Picoseconds time) {
     Picoseconds& longest = times.time[static_cast<std::size_t>(stage)];
     longest = std::max(longest, time);
   };
   std::int64_t triangles = 0;
   for (const TilerStatistics& tiler : statistics.tilers) {
     triangles += tiler.triangles;
-    atLeast(FrameStage::kHost, tiler.transfer.busy);
-    atLeast(FrameStage::kSetUp, tiler.set_up.busy);
-    atLeast(FrameStage::kTiling, tiler.tiling.busy);
+    at_least(FrameStage::kHost, tiler.transfer.busy);
+    at_least(FrameStage::kSetUp, tiler.set_up.busy);
+    at_least(FrameStage::kTiling, tiler.tiling.busy);
   }
-  atLeast(FrameStage::kHost, triangles * configuration.host_triangle * kNanosecond);
-  const auto addRegisters = [&](const std::vector<RegisterStatistics>& registers) {
+  at_least(FrameStage::kHost, triangles * configuration.host_triangle * kNanosecond);
+  const auto add_registers = [&](const std::vector<RegisterStatistics>& registers) {
     for (const RegisterStatistics& each : registers)
-      atLeast(FrameStage::kTree, (each.busy + each.lost) * kTreeCycle);
+      at_least(FrameStage::kTree, (each.busy + each.lost) * kTreeCycle);
   };
   for (const TreeLevelStatistics& level : statistics.tree.levels) {
-    addRegisters(level.inputs);
-    addRegisters(level.buffers);
+    add_registers(level.inputs);
+    add_registers(level.buffers);
   }
-  addRegisters(statistics.tree.outlets);
+  add_registers(statistics.tree.outlets);
   for (const MemoryStatistics& memory : statistics.memories)
-    atLeast(FrameStage::kMemories, memory.channel.busy);
-  atLeast(FrameStage::kScanOut, statistics.reading);
+    at_least(FrameStage::kMemories, memory.channel.busy);
+  at_least(FrameStage::kScanOut, statistics.reading);
   return times;
 }
 
