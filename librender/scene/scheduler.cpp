@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "librender/scene/normal_cone.h"
+#include "librender/scene/split_cost.h"
 
 namespace deltaz {
 namespace {
@@ -65,7 +66,16 @@ bool Scheduler::isFineEnough(const CutNode& candidate) const {
   if (candidate.in_view && must_open_.contains(node.number)) return false;
   if (options_.fixed_level >= 0) return node.record.level <= options_.fixed_level;
   if (!candidate.in_view) return true;
-  return options_.tolerance > 0 && ownError(candidate) <= options_.tolerance;
+  return options_.tolerance > 0 && ownError(candidate) <= options_.tolerance && !drawsFewerOpened(candidate);
+}
+
+// Whether what is hidden or out of view below a node makes up for finer levels. What waits may be seen.
+bool Scheduler::drawsFewerOpened(const CutNode& candidate) const {
+  if (!options_.cull || !options_.look_below) return false;
+  return deltaz::drawsFewerOpened(
+      candidate.node, database_.grid(candidate.node.record.grid), [this](const NodeVolume& volume) {
+        return !view_volume_.isOutside(volume) && !horizon_.hides(volume) && !(hides_ && hides_(volume));
+      });
 }
 
 // False, and counted, if nothing of the node can be seen.
@@ -315,18 +325,7 @@ void Scheduler::setOccluded(std::uint32_t node) {
 void Scheduler::countTriangles(const CutNode& node, FrameStatistics::FullResolution& counts) const {
   const NodePosition position = positionOf(node.node.record);
   const GridGeometry& grid = database_.grid(position.grid);
-  const std::int64_t leaf = grid.header().leaf_cells;
-  const auto triangles = [&](int level) {
-    // Posts of the level under the node, within the area.
-    const std::int64_t span = leaf << (position.level - level);
-    const auto cells = [&](std::int64_t place, PostRange inside) {
-      return std::max<std::int64_t>(
-          0, std::min((place + 1) * span, inside.end - 1) - std::max(place * span, inside.begin));
-    };
-    return static_cast<std::uint64_t>(2 * cells(position.x, grid.columnsAt(level)) *
-                                      cells(position.y, grid.rowsAt(level)));
-  };
-  const std::uint64_t all = triangles(0);
+  const std::uint64_t all = gridTriangles(grid, position, 0);
   switch (node.unseen) {
     case Unseen::kOutOfView:
       counts.out_of_view += all;
@@ -343,7 +342,7 @@ void Scheduler::countTriangles(const CutNode& node, FrameStatistics::FullResolut
     case Unseen::kNot:
       break;
   }
-  const std::uint64_t drawn = std::min(all, triangles(position.level));
+  const std::uint64_t drawn = std::min(all, gridTriangles(grid, position, position.level));
   counts.drawn += drawn;
   counts.coarser += all - drawn;
 }

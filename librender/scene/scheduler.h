@@ -3,10 +3,11 @@
 //
 // A node is refined while its geometric or its coverage error projects to more than the tolerance, and while
 // the eye is inside its bounding volume and its error is not zero. Nodes that cannot be seen, because they
-// are out of view, below the horizon or turned away, stay as they are. Where two levels meet, the finer
-// node's border follows the coarser one's edges (objects/border_stitcher.h), so along that strip both levels'
-// errors add: the coarser node is refined until the sum projects to no more than the tolerance, too.
-// Neighbours may differ by any number of levels.
+// are out of view, below the horizon or turned away, stay as they are. A node of which no quarter can be
+// seen, though the node might, is refined, to be culled by what is below it (scene/split_cost.h). Where two
+// levels meet, the finer node's border follows the coarser one's edges (objects/border_stitcher.h), so along
+// that strip both levels' errors add: the coarser node is refined until the sum projects to no more than the
+// tolerance, too. Neighbours may differ by any number of levels.
 //
 // The cut may be made from near to far, so that what is drawn of it tells what need not be opened
 // (Scheduler).
@@ -52,6 +53,8 @@ struct ScheduleOptions {
   bool test_strips = true;
   // For tests of culling: false takes everything for seen.
   bool cull = true;
+  // For tests and benchmarks of the same: false opens nothing only because fewer triangles are left below it.
+  bool look_below = true;
 };
 
 // Counts in `statistics` the nodes visited, those not opened because nothing of them can be seen (by the
@@ -104,6 +107,7 @@ class Scheduler {
 
   double ownError(const CutNode& candidate) const;
   bool isFineEnough(const CutNode& candidate) const;
+  bool drawsFewerOpened(const CutNode& candidate) const;
   bool maySee(CutNode& candidate);
   void look(CutNode& candidate);
   Status refine(std::vector<Node>& waiting);

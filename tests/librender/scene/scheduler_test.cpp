@@ -141,6 +141,31 @@ TEST(Scheduler, lists_all_that_is_in_view_nearest_first) {
   }
 }
 
+// A coarse node that reaches into the picture with a corner of its volume costs all of its triangles.
+TEST(Scheduler, opens_a_node_if_nothing_that_can_be_seen_is_left_below_it) {
+  const MemoryDatabase area = makeDatabase(smallArea(), 8);
+  std::uint64_t saved = 0, more = 0;
+  for (int heading = 0; heading < 360; heading += 15) {
+    for (const double above : {30.0, 3000.0}) {
+      const ViewTransform view = makeViewTransform(
+          cameraOver(area.database, 0.5, 0.5, above, heading, -10, 320, 200), EllipsoidShape{});
+      ScheduleOptions options{100.0};
+      const auto drawn = [&] {
+        FrameStatistics::Nodes counts;
+        const Schedule schedule =
+            scheduleNodes(area.database, SeamIndex(area.database), view, options, counts).value();
+        EXPECT_LE(schedule.projected_error, options.tolerance);
+        return schedule.front_to_back.size();
+      };
+      const std::size_t with = drawn();
+      options.look_below = false;
+      const std::size_t without = drawn();
+      (with < without ? saved : more) += with < without ? without - with : with - without;
+    }
+  }
+  EXPECT_GT(saved, 10 * more);
+}
+
 TEST(Scheduler, an_eye_inside_a_node_sees_it_at_full_resolution) {
   const MemoryDatabase area = makeDatabase(smallArea());
   for (const double above : {-200.0, -1.0, 0.01, 2.0}) {
