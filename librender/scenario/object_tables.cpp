@@ -136,6 +136,7 @@ std::vector<double> takeTurns(const std::vector<std::function<void()>>& works, i
     }
   }
   std::vector<double> least;
+  least.reserve(times.size());
   for (const std::vector<double>& each : times) least.push_back(spreadOf(each).minimum);
   return least;
 }
@@ -246,6 +247,7 @@ Status addTable29(int rounds, const Database& database, const ScenarioView& scen
   for (const double tolerance : {0.5, 1.0, 2.0, 4.0, 8.0})
     ways.push_back({fmt::format("tolerance {} px", tolerance), optionsOf(scene, tolerance)});
   std::vector<std::function<void()>> draws;
+  draws.reserve(ways.size());
   std::optional<Error> failed;
   for (const Way& way : ways) {
     draws.push_back([&] {
