@@ -41,7 +41,7 @@ def with_one_post_changed(source, folder):
 
 @case
 def every_real_file_comes_back_post_for_post(folder):
-    for source in real_files():
+    for number, source in enumerate(real_files()):
         area = round_trip(source, folder)
         changed, longitude, latitude = with_one_post_changed(source, folder)
         ended = run("dbcheck", area, "--against", changed, "--json", expect=1)
@@ -52,6 +52,8 @@ def every_real_file_comes_back_post_for_post(folder):
         require(abs(where["longitude"] - longitude) < 1e-9 and abs(where["latitude"] - latitude) < 1e-9,
                 f"{source.name}: {where} is not {longitude}, {latitude}")
         require(abs(issues["SRC_HEIGHT"]["worst"]["magnitude"]) == 1, f"{source.name}: not 1 m\n{ended}")
+        if number > 0:
+            continue
         text = run("dbcheck", area, "--against", changed, expect=1).out
         require(f"lon {longitude:.7f}, lat {latitude:.7f}" in text and "invalid" in text.splitlines()[0], text)
 

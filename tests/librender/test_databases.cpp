@@ -1,5 +1,6 @@
 #include "tests/librender/test_databases.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -58,6 +59,32 @@ Camera cameraOver(const Database& database, double x, double y, double above, do
   camera.width = width;
   camera.height = height;
   return camera;
+}
+
+RawGrid countryOfTwoErrors(std::int32_t rise) {
+  SyntheticGridOptions options = smallArea();
+  options.west = -122;
+  options.columns = 129;
+  options.rows = 65;
+  RawGrid grid = syntheticGrid(options);
+  const auto at = [&](std::int64_t column, std::int64_t row) -> std::int32_t& {
+    return grid.heights[static_cast<std::size_t>(row * options.columns + column)];
+  };
+  std::fill(grid.heights.begin(), grid.heights.end(), 500);
+  constexpr std::int64_t kLine = 64;
+  for (std::int64_t step = 4; step > 0; step /= 2) {
+    for (std::int64_t row = 0; row < options.rows; row += step) {
+      for (std::int64_t column = 0; column < options.columns; column += step) {
+        const std::int64_t dx = column % (2 * step), dy = row % (2 * step);
+        if (dx == 0 && dy == 0) continue;
+        const std::int32_t middle = (at(column - dx, row - dy) + at(column + dx, row + dy)) / 2;
+        const std::int32_t in_west = step == 2 ? rise : step == 4 && column < kLine ? 400 : 0;
+        const std::int32_t in_east = step == 1 ? rise : step == 2 ? 400 : 0;
+        at(column, row) = middle + (column <= kLine ? in_west : in_east);
+      }
+    }
+  }
+  return grid;
 }
 
 }  // namespace deltaz

@@ -29,6 +29,13 @@ Picture draw(EngineKind kind, const Database& database, const RenderOptions& opt
              FrameStatistics& statistics);
 Picture draw(EngineKind kind, const Database& database, const RenderOptions& options);
 
+// Country where both errors meet. Every post is the middle of an edge of the next coarser level, plus a rise:
+// in the west, up to and on the line between two coarse nodes, `rise` on the posts that level 1 adds, so that
+// level 2 is good enough; in the east on those that level 0 adds, so that level 1 is. Rises of 400 keep
+// either from being drawn coarser. Beside the line the east's faces err by their own error and by half of
+// what the line moved.
+RawGrid countryOfTwoErrors(std::int32_t rise);
+
 // A camera `above` metres over the ground at a fraction (x, y) of the area, looking along heading and pitch.
 Camera cameraOver(const Database& database, double x, double y, double above, double heading, double pitch,
                   int width, int height);

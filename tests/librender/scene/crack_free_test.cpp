@@ -149,37 +149,6 @@ TEST(CrackFree, no_view_of_a_synthetic_area_has_a_crack) {
   EXPECT_GT(worst, 0.25);
 }
 
-// Country where both errors meet. Every post is the middle of an edge of the next coarser level, plus a rise:
-// in the west, up to and on the line between two coarse nodes, `rise` on the posts that level 1 adds, so that
-// level 2 is good enough; in the east on those that level 0 adds, so that level 1 is. Rises of 400 keep
-// either from being drawn coarser. Beside the line the east's faces err by their own error and by half of
-// what the line moved.
-RawGrid countryOfTwoErrors(std::int32_t rise) {
-  SyntheticGridOptions options = smallArea();
-  options.west = -122;
-  options.columns = 129;
-  options.rows = 65;
-  RawGrid grid = syntheticGrid(options);
-  const auto at = [&](std::int64_t column, std::int64_t row) -> std::int32_t& {
-    return grid.heights[static_cast<std::size_t>(row * options.columns + column)];
-  };
-  std::fill(grid.heights.begin(), grid.heights.end(), 500);
-  constexpr std::int64_t kLine = 64;
-  for (std::int64_t step = 4; step > 0; step /= 2) {
-    for (std::int64_t row = 0; row < options.rows; row += step) {
-      for (std::int64_t column = 0; column < options.columns; column += step) {
-        const std::int64_t dx = column % (2 * step), dy = row % (2 * step);
-        if (dx == 0 && dy == 0) continue;
-        const std::int32_t middle = (at(column - dx, row - dy) + at(column + dx, row + dy)) / 2;
-        const std::int32_t in_west = step == 2 ? rise : step == 4 && column < kLine ? 400 : 0;
-        const std::int32_t in_east = step == 1 ? rise : step == 2 ? 400 : 0;
-        at(column, row) = middle + (column <= kLine ? in_west : in_east);
-      }
-    }
-  }
-  return grid;
-}
-
 // What is said to be drawn before it is ready makes a scheduler contradict itself, which it notices and
 // mends.
 TEST(CrackFree, a_strip_that_reaches_what_is_drawn_is_noticed) {
