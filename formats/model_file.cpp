@@ -148,7 +148,7 @@ Result<ModelTree> decodeModelTree(std::span<const std::byte> bytes, std::uint32_
 }
 
 std::size_t vertexBytes(const ModelMesh& mesh) {
-  return 12 + (mesh.curve_shaded() ? 6 : 0) + (mesh.colored_by_vertex ? 3 : 0);
+  return 12 + (mesh.curveShaded() ? 6 : 0) + (mesh.colored_by_vertex ? 3 : 0);
 }
 
 std::size_t triangleBytes(const ModelMesh& mesh) {
@@ -161,7 +161,7 @@ std::vector<std::byte> encodeModelMesh(const ModelMesh& mesh) {
   ByteWriter writer;
   writer.put(static_cast<std::uint32_t>(mesh.triangles.size()));
   writer.put(static_cast<std::uint32_t>(mesh.vertices.size()));
-  writer.put(static_cast<std::uint8_t>((mesh.curve_shaded() ? kCurveShaded : 0) |
+  writer.put(static_cast<std::uint8_t>((mesh.curveShaded() ? kCurveShaded : 0) |
                                        (mesh.colored_by_vertex ? kColoredByVertex : 0) |
                                        (mesh.two_sided ? kTwoSided : 0)));
   writer.putZeros(kMeshHeaderBytes - writer.size());

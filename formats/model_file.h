@@ -36,7 +36,7 @@ struct ModelMesh {
   std::vector<std::array<float, 3>> vertices;        // metres, in the part's space
   std::vector<std::array<std::int16_t, 3>> normals;  // one per vertex, times kModelNormalScale; or none
   std::vector<std::array<std::uint8_t, 3>> colors;   // sRGB codes, one per vertex or one per triangle
-  bool curve_shaded() const { return !normals.empty(); }
+  bool curveShaded() const { return !normals.empty(); }
   bool operator==(const ModelMesh&) const = default;
 };
 

@@ -155,7 +155,7 @@ std::vector<FinishedLod> makeDetailLevels(const ImportedMesh& mesh, std::size_t 
   const double radius = radiusOf(positions);
   const TriangleView view{positions, mesh.triangles};
   const NearestTriangle finest(view);
-  const FinestLook look(mesh, finest, lods.front().mesh.curve_shaded());
+  const FinestLook look(mesh, finest, lods.front().mesh.curveShaded());
   for (const DecimatedMesh& bare : decimateMesh(view, targets)) {
     const ImportedMesh coarse = look.dress(bare, positions);
     if (coarse.triangles.empty()) break;

@@ -48,17 +48,19 @@ class FilterKernel {
   int reach() const { return reach_; }
   // Of sample s of the pixel dj columns to the right and di rows down, |dj|, |di| <= reach().
   double weight(int dj, int di, int s) const {
-    return weight_[(static_cast<std::size_t>((di + reach_) * (2 * reach_ + 1) + dj + reach_)) * samples_ +
-                   static_cast<std::size_t>(s)];
+    return weight_[place(dj, di) * samples_ + static_cast<std::size_t>(s)];
   }
   // Of all samples of that pixel together.
-  double weightOfAll(int dj, int di) const {
-    return all_[static_cast<std::size_t>((di + reach_) * (2 * reach_ + 1) + dj + reach_)];
-  }
+  double weightOfAll(int dj, int di) const { return all_[place(dj, di)]; }
   // The sum of all weights of pixel (j, i) of a picture: of the samples within it.
   double sum(int j, int i, int width, int height) const;
 
  private:
+  std::size_t place(int dj, int di) const {
+    return static_cast<std::size_t>(di + reach_) * static_cast<std::size_t>(2 * reach_ + 1) +
+           static_cast<std::size_t>(dj + reach_);
+  }
+
   int reach_;
   std::size_t samples_;
   std::vector<double> weight_, all_;

@@ -88,7 +88,7 @@ ModelFaces modelFaces(const ModelMesh& mesh, const ModelTransform& to_earth, con
 
   // Of each vertex of a curve-shaded mesh, and with its normal turned round.
   std::vector<double> lit, lit_behind;
-  if (mesh.curve_shaded()) {
+  if (mesh.curveShaded()) {
     lit.reserve(mesh.normals.size());
     for (const auto& normal : mesh.normals) lit.push_back(part.intensity(toVector(normal)));
     for (std::size_t v = 0; mesh.two_sided && v < mesh.normals.size(); ++v)
@@ -110,9 +110,9 @@ ModelFaces modelFaces(const ModelMesh& mesh, const ModelTransform& to_earth, con
     ModelFace& face = faces.front.emplace_back();
     face.vertex = triangle;
     face.identity = t;
-    const double of_face = mesh.curve_shaded() ? 0 : part.intensity(behind ? normal * -1 : normal);
+    const double of_face = mesh.curveShaded() ? 0 : part.intensity(behind ? normal * -1 : normal);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double intensity = !mesh.curve_shaded() ? of_face
+      const double intensity = !mesh.curveShaded() ? of_face
                                : behind             ? lit_behind[triangle[k]]
                                                     : lit[triangle[k]];
       face.color[k] = decoded(mesh.colors[mesh.colored_by_vertex ? triangle[k] : t]) * intensity;

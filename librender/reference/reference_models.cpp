@@ -105,7 +105,7 @@ Status addMesh(const ModelMesh& mesh, const PlacedPart& part, std::uint32_t inst
       triangle.position[k] = {dot(view.forward, at[k]), dot(view.right, at[k]) * view.pixels,
                               dot(view.down, at[k]) * view.pixels};
       const Vector3 normal =
-          mesh.curve_shaded() ? part.normal(toVector(mesh.normals[corners[k]])) : normalized(outwards);
+          mesh.curveShaded() ? part.normal(toVector(mesh.normals[corners[k]])) : normalized(outwards);
       const auto& code = mesh.colors[mesh.colored_by_vertex ? corners[k] : t];
       triangle.color[k] = LinearColor{decodeSrgb(code[0]), decodeSrgb(code[1]), decodeSrgb(code[2])} *
                           environment.light.intensity(normal * side);

@@ -75,7 +75,7 @@ Result<SampledScene> sampledScene(const Database& database, const RenderOptions&
   DELTAZ_TRY_ASSIGN(ars::SceneTriangles triangles,
                     ars::sceneTriangles(database, environment, options, statistics));
   statistics.projected_error /= raster.ratio;
-  return SampledScene{raster, std::move(environment), std::move(triangles)};
+  return SampledScene{raster, environment, std::move(triangles)};
 }
 
 // The picture that is shown of the samples.

@@ -151,7 +151,7 @@ TEST(DetailLevels, coarser_ones_are_colored_and_shaded_as_the_finest) {
   const std::vector<FinishedLod> lods =
       makeDetailLevels(imported(ball(12), {SrgbColor{200, 0, 0}, SrgbColor{0, 0, 200}}), 16);
   for (const FinishedLod& lod : lods) {
-    ASSERT_TRUE(lod.mesh.curve_shaded());
+    ASSERT_TRUE(lod.mesh.curveShaded());
     for (std::size_t v = 0; v < lod.mesh.vertices.size(); ++v) {
       // On a ball around the origin normals point as positions do.
       double along = 0;

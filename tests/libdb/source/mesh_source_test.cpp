@@ -283,7 +283,7 @@ TEST(MeshPacking, the_smallest_form_that_loses_nothing_is_taken) {
   ImportedMesh mesh = tetrahedron();
   // Four triangles of four colours: one colour each.
   EXPECT_FALSE(packMesh(mesh).colored_by_vertex);
-  EXPECT_FALSE(packMesh(mesh).curve_shaded());
+  EXPECT_FALSE(packMesh(mesh).curveShaded());
   EXPECT_EQ(packMesh(mesh).vertices.size(), 4u);
   // Corners of several colours can only be given by vertex.
   mesh.colors[0][1] = {200, 0, 0};
@@ -302,9 +302,9 @@ TEST(MeshPacking, the_smallest_form_that_loses_nothing_is_taken) {
                                          static_cast<float>(n.z)};
     mesh.normals.push_back({normal, normal, normal});
   }
-  EXPECT_FALSE(packMesh(mesh).curve_shaded());
+  EXPECT_FALSE(packMesh(mesh).curveShaded());
   mesh.normals[0][0] = {1, 0, 0};
-  EXPECT_TRUE(packMesh(mesh).curve_shaded());
+  EXPECT_TRUE(packMesh(mesh).curveShaded());
 }
 
 }  // namespace
