@@ -21,6 +21,10 @@ endfunction()
 function(deltaz_use_precompiled_headers target name)
   if(DELTAZ_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} REUSE_FROM ${name})
+    # GCC's garbage collector goes through all that the header made, each time; a gigabyte is enough to need it hardly ever (about a tenth less processor time).
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1048576)
+    endif()
     # GCC 12 takes what it inlines from precompiled headers for code of ours, and warns of copies of strings there that are sound (as with -Wrestrict). The
     # preset dev builds without these headers and with the warnings.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
