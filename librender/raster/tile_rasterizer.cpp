@@ -13,6 +13,7 @@
 
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
+#include "librender/raster/load_fours-inl.h"
 #include "librender/raster/triangle_setup-inl.h"
 #include "librender/raster/triangle_setup.h"
 
@@ -266,7 +267,9 @@ class TileRasterizer {
       }
       touched = hn::And(touched, hn::Gt(greatest, hn::Set(kInt, -1)));
       const Ints block = hn::Add(first_of_patch, hn::Load(kInt, kNeighbour + v));
-      const Floats there = hn::GatherIndex(kFloat, buffer_.least.data(), block);
+      const float* const least = buffer_.least.data() + first_block;
+      const Floats there = everyFourth(
+          kFloat, [&](std::size_t n) { return least + kNeighbour[v + n]; }, 0);
       const auto nearer = hn::RebindMask(kInt, hn::Gt(hn::Set(kFloat, batch.greatest[t]), there));
       hidden = hn::Or(hidden, hn::AndNot(nearer, touched));
       const auto kept = hn::And(touched, nearer);
