@@ -3,6 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/grid_culler.cpp"
 #include <algorithm>
+#include <array>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -86,49 +87,38 @@ class FaceCuller {
     }
   }
 
-  void cullIndexed(const IndexedFaces& faces, CulledFaces& out, CullCounts& counts) const {
-    const hn::Rebind<std::uint8_t, Tag> bytes;
-    for (std::size_t n = 0; n < faces.count; n += hn::Lanes(d_)) {
-      const Mask in = hn::FirstN(d_, faces.count - n);
-      const auto corner = [&](const std::uint8_t* index) {
-        return hn::IfThenElseZero(in, hn::PromoteTo(d_, hn::LoadU(bytes, index + n)));
-      };
-      cullCorners(corner(faces.first), corner(faces.second), corner(faces.third), faces.snapped_x,
-                  faces.snapped_y, in, n, out, counts);
-    }
-  }
-
-  void cullByCorners(const CornerFaces& faces, CulledFaces& out, CullCounts& counts) const {
-    const std::uint32_t* const words = faces.words;
-    const hn::RebindToUnsigned<Tag> du;
-    const std::size_t lanes = hn::Lanes(d_);
-    for (std::size_t n = 0; n < faces.count; n += lanes) {
-      const std::size_t left = faces.count - n;
-      // Nothing is read behind the last face.
-      std::uint32_t rest[4 * 16] = {};
-      if (left < lanes) std::copy_n(words + 4 * n, 4 * left, rest);
-      hn::Vec<hn::RebindToUnsigned<Tag>> a, b, c, unused;
-      hn::LoadInterleaved4(du, left < lanes ? rest : words + 4 * n, a, b, c, unused);
-      cullCorners(hn::BitCast(d_, a), hn::BitCast(d_, c), hn::BitCast(d_, b), faces.snapped_x,
-                  faces.snapped_y, hn::FirstN(d_, left), n, out, counts);
+  // Faces by the vertices corner(n)[0..2] in the order they run clockwise on the screen.
+  template <class Corners>
+  void cullByCorners(std::size_t count, const std::int32_t* snapped_x, const std::int32_t* snapped_y,
+                     Corners corners, CulledFaces& out, CullCounts& counts) const {
+    // Vectors of them are collected one by one: hardware gathers take several times as long. Many at a time,
+    // for what has just been stored in parts can be loaded as a whole only after a while.
+    constexpr std::size_t kCollected = 64;
+    alignas(64) std::int32_t x[3][kCollected] = {}, y[3][kCollected] = {};
+    for (std::size_t first = 0; first < count; first += kCollected) {
+      const std::size_t collected = std::min(kCollected, count - first);
+      for (std::size_t n = 0; n < collected; ++n) {
+        const std::array<std::uint32_t, 3> vertex = corners(first + n);
+        for (std::size_t k = 0; k < 3; ++k) {
+          x[k][n] = snapped_x[vertex[k]];
+          y[k][n] = snapped_y[vertex[k]];
+        }
+      }
+      for (std::size_t n = 0; n < collected; n += hn::Lanes(d_)) {
+        const Vec ax = hn::Load(d_, x[0] + n), ay = hn::Load(d_, y[0] + n);
+        const Vec bx = hn::Load(d_, x[1] + n), by = hn::Load(d_, y[1] + n);
+        const Vec cx = hn::Load(d_, x[2] + n), cy = hn::Load(d_, y[2] + n);
+        const Mask in = hn::FirstN(d_, collected - n);
+        counts.in += hn::CountTrue(d_, in);
+        const Vec area =
+            hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)), hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
+        cull(joined({hn::Min(ax, bx), hn::Max(ax, bx)}, cx), joined({hn::Min(ay, by), hn::Max(ay, by)}, cy),
+             area, in, hn::Iota(d_, static_cast<std::int32_t>(first + n)), out, counts);
+      }
     }
   }
 
  private:
-  // Faces n, n + 1, ... by their corners in the order they run clockwise on the screen.
-  HWY_INLINE void cullCorners(Vec a, Vec b, Vec c, const std::int32_t* snapped_x,
-                              const std::int32_t* snapped_y, Mask in, std::size_t n, CulledFaces& out,
-                              CullCounts& counts) const {
-    const Vec ax = hn::GatherIndex(d_, snapped_x, a), ay = hn::GatherIndex(d_, snapped_y, a);
-    const Vec bx = hn::GatherIndex(d_, snapped_x, b), by = hn::GatherIndex(d_, snapped_y, b);
-    const Vec cx = hn::GatherIndex(d_, snapped_x, c), cy = hn::GatherIndex(d_, snapped_y, c);
-    counts.in += hn::CountTrue(d_, in);
-    const Vec area =
-        hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)), hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
-    cull(joined({hn::Min(ax, bx), hn::Max(ax, bx)}, cx), joined({hn::Min(ay, by), hn::Max(ay, by)}, cy), area,
-         in, hn::Iota(d_, static_cast<std::int32_t>(n)), out, counts);
-  }
-
   // Of ranges without a vertex before the hither plane, or with nothing but such.
   HWY_INLINE Mask isBeside(Range x, Range y) const {
     const Vec hither = hn::Set(d_, kBeforeHitherCoordinate);
@@ -191,11 +181,24 @@ void cullRow(const GridRow& row, int width, int height, CulledFaces& out, Culled
 
 void cullByCorners(const CornerFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts,
                    std::int32_t reach) {
-  FaceCuller(width, height, reach).cullByCorners(faces, out, counts);
+  FaceCuller(width, height, reach)
+      .cullByCorners(
+          faces.count, faces.snapped_x, faces.snapped_y,
+          [&](std::size_t n) {
+            const std::uint32_t* const vertex = faces.words + 4 * n;
+            return std::array{vertex[0], vertex[2], vertex[1]};
+          },
+          out, counts);
 }
 
 void cullIndexed(const IndexedFaces& faces, int width, int height, CulledFaces& out, CullCounts& counts) {
-  FaceCuller(width, height).cullIndexed(faces, out, counts);
+  FaceCuller(width, height)
+      .cullByCorners(
+          faces.count, faces.snapped_x, faces.snapped_y,
+          [&](std::size_t n) {
+            return std::array<std::uint32_t, 3>{faces.first[n], faces.second[n], faces.third[n]};
+          },
+          out, counts);
 }
 
 }  // namespace
@@ -203,10 +206,6 @@ void cullIndexed(const IndexedFaces& faces, int width, int height, CulledFaces& 
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-
-#include <algorithm>
-#include <array>
-#include <vector>
 
 namespace deltaz {
 namespace {
