@@ -196,8 +196,13 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
     const std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
     for (std::size_t block = 0; block < kBlocksAcross; ++block) {
       const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block * kBlockSide));
-      const std::uint32_t whole = buffer.whole[static_cast<std::size_t>(block_i) * kBlocksAcross + block];
-      const ShadingPlanes* const of_whole = whole == kNoTriangle ? nullptr : planes + whole;
+      const std::uint32_t first = owner[block * kBlockPixels];
+      auto same = hn::FirstN(kUnsigned, kLanes);
+      for (std::size_t v = 0; v < kBlockPixels; v += kLanes)
+        same = hn::And(same, hn::Eq(hn::Load(kUnsigned, owner + block * kBlockPixels + v),
+                                    hn::Set(kUnsigned, first)));
+      const ShadingPlanes* const of_whole =
+          first != kNoTriangle && hn::AllTrue(kUnsigned, same) ? planes + first : nullptr;
       for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
         const std::size_t n = block * kBlockPixels + v;
         const Floats inverse_u = hn::Load(kFloat, depth + n);

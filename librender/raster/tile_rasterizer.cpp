@@ -310,9 +310,7 @@ class TileRasterizer {
                  greatest = hn::Set(kFloat, batch.greatest[t]);
     const std::uint32_t number = batch.number[t];
     const Ints one = hn::Set(kInt, 1);
-    hn::Mask<IntTag> pass[kVectors];
     auto any_covered = hn::FirstN(kInt, 0), any_pass = any_covered;
-    auto all_pass = hn::FirstN(kInt, kLanes);
     Floats nearest = hn::Set(kFloat, 3.0e38F);
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto at = [&](std::size_t k) {
@@ -333,29 +331,18 @@ class TileRasterizer {
       const Floats old = hn::Load(kFloat, depth + v * kLanes);
       const Floats value =
           hn::Min(hn::Max(hn::Add(first, hn::Load(kFloat, steps.inverse_u + v * kLanes)), least), greatest);
-      pass[v] = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
-      written_ = hn::Add(written_, hn::IfThenElseZero(pass[v], one));
-      const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass[v]), value, old);
+      const auto pass = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
+      written_ = hn::Add(written_, hn::IfThenElseZero(pass, one));
+      const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass), value, old);
       hn::Store(now, kFloat, depth + v * kLanes);
       nearest = hn::Min(nearest, now);
-      any_pass = hn::Or(any_pass, pass[v]);
-      all_pass = hn::And(all_pass, pass[v]);
+      const auto owners = hn::IfThenElse(hn::RebindMask(kUnsigned, pass), hn::Set(kUnsigned, number),
+                                         hn::Load(kUnsigned, owner + v * kLanes));
+      hn::Store(owners, kUnsigned, owner + v * kLanes);
+      any_pass = hn::Or(any_pass, pass);
     }
     buffer_.wrote[number] |= static_cast<std::uint8_t>(!hn::AllFalse(kInt, any_pass));
     buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
-    const std::uint32_t whole = buffer_.whole[block];
-    if (hn::AllTrue(kInt, all_pass)) {
-      buffer_.whole[block] = number;
-    } else {
-      if (whole != kNoTriangle && !hn::AllFalse(kInt, any_pass)) {
-        for (std::size_t v = 0; v < kVectors; ++v)
-          hn::Store(hn::Set(kUnsigned, whole), kUnsigned, owner + v * kLanes);
-        buffer_.whole[block] = kNoTriangle;
-      }
-      for (std::size_t v = 0; v < kVectors; ++v)
-        hn::BlendedStore(hn::Set(kUnsigned, number), hn::RebindMask(kUnsigned, pass[v]), kUnsigned,
-                         owner + v * kLanes);
-    }
     return !hn::AllFalse(kInt, any_covered);
   }
 
@@ -385,7 +372,7 @@ HWY_EXPORT(rasterize);
 
 void TileBuffer::clear() {
   inverse_u.fill(0);
-  whole.fill(kNoTriangle);
+  triangle.fill(kNoTriangle);
   least.fill(0);
   wrote.clear();
 }

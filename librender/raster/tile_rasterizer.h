@@ -34,11 +34,8 @@ inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 struct alignas(64) TileBuffer {
   // Block by block, rows of blocks from the top; within a block row by row.
   std::array<float, kTileSide * kTileSide> inverse_u;  // 0 where nothing is seen
-  // Index into the tile's triangles of the one seen, where one is; only of blocks that are not one
-  // triangle's.
+  // Index into the tile's triangles of the one seen, or kNoTriangle.
   std::array<std::uint32_t, kTileSide * kTileSide> triangle;
-  std::array<std::uint32_t, kBlocksAcross * kBlocksAcross>
-      whole;  // of a block that is one triangle's, or kNoTriangle
   // Of a block's 1/U; never too great. Blocks below and right of the last may be asked about.
   std::array<float, kBlocksAcross * kBlocksAcross + 4 * kBlocksAcross> least;
   std::vector<std::uint8_t> wrote;  // not 0: some sample was the triangle's, at least for a while

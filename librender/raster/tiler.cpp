@@ -120,9 +120,8 @@ void Tiler::settleTile(const OpenTile& open, Worker& worker, SettledTile& tile) 
   worker.slot.assign(open.triangles.size(), kNoTriangle);
   tile.owner_.assign(buffer.inverse_u.size(), kNoTriangle);
   for (std::size_t pixel = 0; pixel < tile.owner_.size(); ++pixel) {
-    if (buffer.inverse_u[pixel] == 0) continue;
-    const std::uint32_t whole = buffer.whole[pixel / kBlockPixels];
-    const std::uint32_t owner = whole != kNoTriangle ? whole : buffer.triangle[pixel];
+    const std::uint32_t owner = buffer.triangle[pixel];
+    if (owner == kNoTriangle) continue;
     std::uint32_t& slot = worker.slot[owner];
     if (slot == kNoTriangle) {
       slot = static_cast<std::uint32_t>(tile.faces_.size());
