@@ -3,12 +3,14 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/gouraud_shader.cpp"
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "librender/raster/block_lanes.h"
+#include "librender/raster/lane_bits-inl.h"
 #include "librender/raster/load_fours-inl.h"
 
 #ifndef DELTAZ_GOURAUD_SHADER_ONCE
@@ -127,40 +129,81 @@ HWY_INLINE Ints shade(Plane plane, Floats x, Floats y, Floats u) {
                  hn::Add(hn::ShiftLeft<16>(channel(2)), hn::Set(kInt, static_cast<std::int32_t>(kRest))));
 }
 
-// Pixels of several triangles: what each needs is loaded from its own.
-HWY_INLINE Ints shadeMixed(const ShadingPlanes* planes, const std::uint32_t* owner, Floats inverse_u,
-                           Floats x, Floats y, Floats u, Ints background) {
-  const auto seen = hn::Gt(inverse_u, hn::Zero(kFloat));
-  if (hn::AllFalse(kFloat, seen)) return background;
-  // Pixels that show nothing have no owner.
+// Where pixels lie, and what is there.
+struct Pixels {
+  Floats x, y, inverse_u;
+  const std::uint32_t* owner;
+};
+
+HWY_INLINE Floats reciprocal(Floats value) {
+  return hn::Div(hn::Set(kFloat, 1.0F), value);
+}
+
+// Pixels without an owner show the background.
+HWY_INLINE Ints withBackground(const Pixels& pixels, Ints color, Ints background) {
+  return hn::IfThenElse(hn::RebindMask(kInt, hn::Gt(pixels.inverse_u, hn::Zero(kFloat))), color, background);
+}
+
+HWY_INLINE Ints shadeOne(const ShadingPlanes& planes, const Pixels& pixels) {
+  return shade([&](std::size_t k) { return hn::Set(kFloat, planes.value[k]); }, pixels.x, pixels.y,
+               reciprocal(pixels.inverse_u));
+}
+
+HWY_INLINE Ints shadeTwo(const ShadingPlanes* planes, std::uint32_t first, std::uint32_t second,
+                         const Pixels& pixels, Ints background) {
+  const auto is_second =
+      hn::RebindMask(kFloat, hn::Eq(hn::Load(kUnsigned, pixels.owner), hn::Set(kUnsigned, second)));
+  const float* const of_second = planes[second == kNoTriangle ? first : second].value;
+  const float* const of_first = planes[first == kNoTriangle ? second : first].value;
+  const Ints color = shade(
+      [&](std::size_t k) {
+        return hn::IfThenElse(is_second, hn::Set(kFloat, of_second[k]), hn::Set(kFloat, of_first[k]));
+      },
+      pixels.x, pixels.y, reciprocal(pixels.inverse_u));
+  return withBackground(pixels, color, background);
+}
+
+// What each pixel needs is loaded from its own.
+HWY_INLINE Ints shadeMore(const ShadingPlanes* planes, const Pixels& pixels, Ints background) {
   alignas(64) std::uint32_t number[kLanes];
-  hn::Store(hn::IfThenElseZero(hn::RebindMask(kUnsigned, seen), hn::Load(kUnsigned, owner)), kUnsigned,
-            number);
+  const auto owner = hn::Load(kUnsigned, pixels.owner);
+  hn::Store(hn::IfThenZeroElse(hn::Eq(owner, hn::Set(kUnsigned, kNoTriangle)), owner), kUnsigned, number);
   Floats values[4][4];
   for (std::size_t part = 0; part < 4; ++part)
     loadFours(
         kFloat, [&](std::size_t n) { return planes[number[n]].value + 4 * part; }, values[part]);
-  const Ints color = shade([&](std::size_t n) { return values[n / 4][n % 4]; }, x, y, u);
-  return hn::IfThenElse(hn::RebindMask(kInt, seen), color, background);
+  const Ints color = shade([&](std::size_t n) { return values[n / 4][n % 4]; }, pixels.x, pixels.y,
+                           reciprocal(pixels.inverse_u));
+  return withBackground(pixels, color, background);
 }
 
-// One row of pixels out of a row of blocks. Pictures are larger than caches and nothing reads them soon, so
-// that rows of whole cache lines go past them (`kLines`).
-template <bool kLines, typename T>
+// A bit for each pixel of a block that is not `known`'s.
+HWY_INLINE std::uint32_t notOwnedBy(std::uint32_t known, const std::uint32_t* owner) {
+  std::uint32_t others = 0;
+  for (std::size_t v = 0; v < kBlockPixels; v += kLanes)
+    others |= laneBits(hn::Ne(hn::Load(kUnsigned, owner + v), hn::Set(kUnsigned, known))) << v;
+  return others;
+}
+
+// One row of pixels out of a row of blocks.
+template <typename T>
 HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
-  const hn::CappedTag<T, kBlockSide> d;
-  int j = 0;
-  for (; j + kBlockSide <= columns; j += kBlockSide, blocks += kBlockPixels, out += kBlockSide) {
-    for (std::size_t k = 0; k < kBlockSide; k += hn::MaxLanes(d)) {
-      const auto pixels = hn::Load(d, blocks + k);
-      if constexpr (kLines) {
-        hn::Stream(pixels, d, out + k);
-      } else {
-        hn::StoreU(pixels, d, out + k);
-      }
-    }
+  for (; columns > 0; columns -= kBlockSide, blocks += kBlockPixels, out += kBlockSide)
+    std::copy_n(blocks, std::min(columns, kBlockSide), out);
+}
+
+// A whole row of a tile, in whole cache lines. Pictures are larger than caches and nothing reads them soon,
+// so that it goes past them.
+template <typename T>
+HWY_INLINE void streamRow(const T* blocks, T* out) {
+  const hn::CappedTag<T, 16> d;
+  constexpr std::size_t kAtOnce = hn::MaxLanes(d);
+  for (std::size_t j = 0; j < kTileSide; j += kAtOnce) {
+    const auto at = [&](std::size_t n) {
+      return blocks + (j + n) / kBlockSide * kBlockPixels + (j + n) % kBlockSide;
+    };
+    hn::Stream(everyFourth(d, at, 0), d, out + j);
   }
-  for (int k = 0; j + k < columns; ++k) out[k] = blocks[k];
 }
 
 void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, const TileBuffer& buffer,
@@ -186,7 +229,8 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
   const int columns = std::min(kTileSide, tile.width - tile.j * kTileSide);
   const int rows = std::min(kTileSide, tile.height - tile.i * kTileSide);
-  const bool lines = static_cast<std::size_t>(frame.width) % (kCacheLine / sizeof(float)) == 0;
+  const bool lines =
+      columns == kTileSide && static_cast<std::size_t>(frame.width) % (kCacheLine / sizeof(float)) == 0;
   // A row of blocks, coloured block by block, leaves as four rows of pixels.
   alignas(64) std::uint32_t color[kBlocksAcross * kBlockPixels];
   for (int block_i = 0; block_i * kBlockSide < rows; ++block_i) {
@@ -196,24 +240,30 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
     const std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
     for (std::size_t block = 0; block < kBlocksAcross; ++block) {
       const Floats block_x = hn::Set(kFloat, origin_x + static_cast<float>(block * kBlockSide));
-      const std::uint32_t first = owner[block * kBlockPixels];
-      auto same = hn::FirstN(kUnsigned, kLanes);
-      for (std::size_t v = 0; v < kBlockPixels; v += kLanes)
-        same = hn::And(same, hn::Eq(hn::Load(kUnsigned, owner + block * kBlockPixels + v),
-                                    hn::Set(kUnsigned, first)));
-      const ShadingPlanes* const of_whole =
-          first != kNoTriangle && hn::AllTrue(kUnsigned, same) ? planes + first : nullptr;
-      for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
-        const std::size_t n = block * kBlockPixels + v;
-        const Floats inverse_u = hn::Load(kFloat, depth + n);
-        const Floats x = hn::Add(block_x, hn::Load(kFloat, kLaneX + v));
-        const Floats y = hn::Add(block_y, hn::Load(kFloat, kLaneY + v));
-        const Floats u = hn::Div(hn::Set(kFloat, 1.0F), inverse_u);
-        const Ints colors =
-            of_whole != nullptr
-                ? shade([&](std::size_t k) { return hn::Set(kFloat, of_whole->value[k]); }, x, y, u)
-                : shadeMixed(planes, owner + n, inverse_u, x, y, u, background);
-        hn::Store(hn::BitCast(kUnsigned, colors), kUnsigned, color + n);
+      const auto colorBlock = [&](auto colors) {
+        for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
+          const std::size_t n = block * kBlockPixels + v;
+          const Pixels pixels{hn::Add(block_x, hn::Load(kFloat, kLaneX + v)),
+                              hn::Add(block_y, hn::Load(kFloat, kLaneY + v)), hn::Load(kFloat, depth + n),
+                              owner + n};
+          hn::Store(hn::BitCast(kUnsigned, colors(pixels)), kUnsigned, color + n);
+        }
+      };
+      const std::uint32_t* const of_block = owner + block * kBlockPixels;
+      const std::uint32_t first = of_block[0], not_first = notOwnedBy(first, of_block);
+      if (not_first == 0) {
+        if (first == kNoTriangle) {
+          colorBlock([&](const Pixels&) { return background; });
+        } else {
+          colorBlock([&](const Pixels& pixels) { return shadeOne(planes[first], pixels); });
+        }
+        continue;
+      }
+      const std::uint32_t second = of_block[std::countr_zero(not_first)];
+      if ((not_first & notOwnedBy(second, of_block)) == 0) {
+        colorBlock([&](const Pixels& pixels) { return shadeTwo(planes, first, second, pixels, background); });
+      } else {
+        colorBlock([&](const Pixels& pixels) { return shadeMore(planes, pixels, background); });
       }
     }
     const int height = std::min(kBlockSide, rows - block_i * kBlockSide);
@@ -222,11 +272,11 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
                                     static_cast<std::size_t>(frame.width) +
                                 static_cast<std::size_t>(tile.j * kTileSide);
       if (lines) {
-        copyRow<true>(color + i * kBlockSide, columns, &frame.rgba[pixel]);
-        copyRow<true>(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
+        streamRow(color + i * kBlockSide, &frame.rgba[pixel]);
+        streamRow(depth + i * kBlockSide, &frame.inverse_u[pixel]);
       } else {
-        copyRow<false>(color + i * kBlockSide, columns, &frame.rgba[pixel]);
-        copyRow<false>(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
+        copyRow(color + i * kBlockSide, columns, &frame.rgba[pixel]);
+        copyRow(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
       }
     }
   }

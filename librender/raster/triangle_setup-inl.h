@@ -9,12 +9,12 @@
 #endif
 
 #include <algorithm>
-#include <cstring>
 #include <hwy/highway.h>
 #include <span>
 
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
+#include "librender/raster/lane_bits-inl.h"
 #include "librender/raster/load_fours-inl.h"
 #include "librender/raster/rounding-inl.h"
 #include "librender/raster/triangle_setup.h"
@@ -89,8 +89,8 @@ class TriangleSetUp {
       const Floats there = hn::GatherIndex(f, least, block);
       const Floats greatest = hn::Max(hn::Max(w[0], w[1]), w[2]);
       const auto behind = hn::AndNot(beside, hn::And(one_block, hn::RebindMask(s, hn::Le(greatest, there))));
-      dropped.beside |= bits(hn::And(asked, beside)) << t;
-      dropped.hidden |= bits(hn::And(asked, behind)) << t;
+      dropped.beside |= laneBits(hn::RebindMask(u, hn::And(asked, beside))) << t;
+      dropped.hidden |= laneBits(hn::RebindMask(u, hn::And(asked, behind))) << t;
 
       const Compaction kept(hn::AndNot(hn::Or(beside, behind), asked));
       const auto append = [&](auto d, auto values, auto* to) { kept.store(d, values, to + placed.count); };
@@ -203,15 +203,6 @@ class TriangleSetUp {
         hn::Store(rise, s, out.rise[k] + t);
       }
     }
-  }
-
-  // A bit for each lane.
-  static HWY_INLINE std::uint32_t bits(hwy::HWY_NAMESPACE::Mask<IntTag> mask) {
-    std::uint8_t bytes[8] = {};
-    hwy::HWY_NAMESPACE::StoreMaskBits(IntTag(), mask, bytes);
-    std::uint32_t result = 0;
-    std::memcpy(&result, bytes, 4);
-    return result;
   }
 
  private:
