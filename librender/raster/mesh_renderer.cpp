@@ -335,7 +335,7 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   });
   bins_.finish();
 
-  crossing_.assign(bins_.crossingCount(), 0);
+  crossing_.reset(threads, 1 + bins_.crossingCount());
   tbb::parallel_for(std::size_t{0}, bins_.tileCount(), [&](std::size_t t) {
     Worker& worker = *workers_[own()];
     bins_.segmentsOf(t, worker.segments);
@@ -346,7 +346,7 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
     const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};
     worker.buffer.clear();
-    rasterizeTile(tile, worker.triangles, 0, crossing_, worker.buffer, worker.tile_counts);
+    rasterizeTile(tile, worker.triangles, 0, crossing_.notesOf(own()), worker.buffer, worker.tile_counts);
     shadeTileGouraud(tile, worker.triangles, worker.buffer, worker.scratch, frame);
   });
 
@@ -361,14 +361,10 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     counts.samples_tested += worker->tile_counts.tested;
     counts.samples_written += worker->tile_counts.written;
   }
-  std::uint64_t covers = 0, hidden = 0;
-  for (const std::uint8_t bits : crossing_) {
-    covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
-    hidden += bits == kCrossingHidden ? 1 : 0;
-  }
-  counts.drawn += covers + hidden;
-  counts.hidden += hidden;
-  counts.no_sample += bins_.crossingTriangles() - covers - hidden;
+  const CrossingFates::Counts crossing = crossing_.counted();
+  counts.drawn += crossing.covering + crossing.hidden;
+  counts.hidden += crossing.hidden;
+  counts.no_sample += bins_.crossingTriangles() - crossing.covering - crossing.hidden;
   return counts;
 }
 

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "librender/raster/crossing_fates.h"
 #include "librender/raster/gouraud_shader.h"
 #include "librender/raster/tile_bins.h"
 #include "librender/scene/camera.h"
@@ -80,7 +81,7 @@ class MeshRenderer {
   struct Worker;
   TileBins bins_;
   std::vector<std::unique_ptr<Worker>> workers_;
-  std::vector<std::uint8_t> crossing_;
+  CrossingFates crossing_;
 };
 
 }  // namespace deltaz

@@ -3,7 +3,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/tile_rasterizer.cpp"
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstring>
 #include <hwy/cache_control.h>
@@ -13,6 +12,7 @@
 
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
+#include "librender/raster/crossing_fates.h"
 #include "librender/raster/load_fours-inl.h"
 #include "librender/raster/triangle_setup-inl.h"
 #include "librender/raster/triangle_setup.h"
@@ -168,17 +168,14 @@ class TileRasterizer {
       settle({covers[t] != 0, hidden[t] != 0}, triangles[batch.number[t]]->crossing, crossing);
   }
 
+  // Without branches: fates follow each other at random.
   HWY_INLINE void settle(Outcome outcome, std::uint32_t number, std::span<std::uint8_t> crossing) {
-    const bool drawn = outcome.covers || outcome.hidden;
-    if (number == 0) {
-      counts_.drawn += drawn ? 1 : 0;
-      counts_.hidden += drawn && !outcome.covers ? 1 : 0;
-      counts_.no_sample += drawn ? 0 : 1;
-    } else if (drawn) {
-      const auto bits = static_cast<std::uint8_t>((outcome.covers ? kCrossingCovers : 0) |
-                                                  (outcome.hidden ? kCrossingHidden : 0));
-      std::atomic_ref<std::uint8_t>(crossing[number - 1]).fetch_or(bits, std::memory_order_relaxed);
-    }
+    const std::uint64_t covers = outcome.covers ? 1 : 0, hidden = outcome.hidden ? 1 : 0;
+    const std::uint64_t here_alone = number == 0 ? 1 : 0;
+    counts_.drawn += here_alone & (covers | hidden);
+    counts_.hidden += here_alone & ~covers & hidden;
+    counts_.no_sample += here_alone & ~(covers | hidden);
+    crossing[number] |= static_cast<std::uint8_t>(covers * kCrossingCovers + hidden * kCrossingHidden);
   }
 
   static std::int64_t sum(Ints counts) {

@@ -56,9 +56,6 @@ struct TileCounts {
   std::uint64_t drawn = 0, hidden = 0, no_sample = 0;
 };
 
-// What becomes of triangles that touch several tiles, one byte each; bits are set from all tiles.
-inline constexpr std::uint8_t kCrossingCovers = 1, kCrossingHidden = 2;
-
 struct Tile {
   int j = 0, i = 0;           // in tiles
   int width = 0, height = 0;  // of the picture, pixels
@@ -67,7 +64,7 @@ struct Tile {
 };
 
 // Draws triangles[first] and those that follow; owners in `buffer` are indices into `triangles`. Adds to
-// `counts`. `crossing` has an entry for each number of RasterTriangle::crossing.
+// `counts`, and notes what becomes of triangles by RasterTriangle::crossing (crossing_fates.h); 0 has an entry.
 void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                    std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts);
 

@@ -40,24 +40,21 @@ void Tiler::begin(int width, int height, const SampleOffsets* offsets) {
   for (Worker& worker : workers_) worker.counts = {};
 }
 
-Tiler::Worker& Tiler::worker() {
-  return workers_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
+std::size_t Tiler::workerNumber() {
+  return static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
 }
 
 void Tiler::draw(const TileBins& bins) {
-  crossing_.assign(bins.crossingCount(), 0);
-  tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) { drawTile(bins, t, worker()); });
-  std::uint64_t covers = 0, hidden = 0;
-  for (const std::uint8_t bits : crossing_) {
-    covers += (bits & kCrossingCovers) != 0 ? 1 : 0;
-    hidden += bits == kCrossingHidden ? 1 : 0;
-  }
-  crossing_counts_.faces_drawn += covers + hidden;
-  crossing_counts_.hidden += hidden;
-  crossing_counts_.no_sample += bins.crossingTriangles() - covers - hidden;
+  crossing_.reset(workers_.size(), 1 + bins.crossingCount());
+  tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) { drawTile(bins, t); });
+  const CrossingFates::Counts crossing = crossing_.counted();
+  crossing_counts_.faces_drawn += crossing.covering + crossing.hidden;
+  crossing_counts_.hidden += crossing.hidden;
+  crossing_counts_.no_sample += bins.crossingTriangles() - crossing.covering - crossing.hidden;
 }
 
-void Tiler::drawTile(const TileBins& bins, std::size_t t, Worker& worker) {
+void Tiler::drawTile(const TileBins& bins, std::size_t t) {
+  Worker& worker = workers_[workerNumber()];
   bins.segmentsOf(t, worker.segments);
   if (worker.segments.empty()) return;
   if (!open_[t]) open_[t] = std::make_unique<OpenTile>();
@@ -70,7 +67,7 @@ void Tiler::drawTile(const TileBins& bins, std::size_t t, Worker& worker) {
   const auto across = static_cast<std::size_t>(frame_.across);
   const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), frame_.width, frame_.height,
                   offsets_};
-  rasterizeTile(tile, open.triangles, before, crossing_, open.buffer, worker.counts);
+  rasterizeTile(tile, open.triangles, before, crossing_.notesOf(workerNumber()), open.buffer, worker.counts);
   open.least = leastWithin(open.buffer, 0, std::min(kTileSide, tile.width - tile.j * kTileSide) - 1, 0,
                            std::min(kTileSide, tile.height - tile.i * kTileSide) - 1, 0);
 }
@@ -101,7 +98,7 @@ const TiledFrame& Tiler::settle() {
   tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) {
     frame_.tiles[t].faces_.clear();
     frame_.tiles[t].owner_.clear();
-    if (open_[t] && !open_[t]->triangles.empty()) settleTile(*open_[t], worker(), frame_.tiles[t]);
+    if (open_[t] && !open_[t]->triangles.empty()) settleTile(*open_[t], workers_[workerNumber()], frame_.tiles[t]);
   });
   frame_.statistics = crossing_counts_;
   for (const Worker& worker : workers_) {

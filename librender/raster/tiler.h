@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "librender/raster/crossing_fates.h"
 #include "librender/raster/face_lanes.h"
 #include "librender/raster/tile_bins.h"
 #include "librender/raster/tile_rasterizer.h"
@@ -74,13 +75,13 @@ class Tiler {
     std::vector<TileBins::Segment> segments;
     std::vector<std::uint32_t> slot;  // of a triangle among the faces that are seen
   };
-  Worker& worker();
-  void drawTile(const TileBins& bins, std::size_t t, Worker& worker);
+  static std::size_t workerNumber();
+  void drawTile(const TileBins& bins, std::size_t t);
   static void settleTile(const OpenTile& open, Worker& worker, SettledTile& tile);
 
   std::vector<std::unique_ptr<OpenTile>> open_;  // row by row; none where no frame drew anything yet
   std::vector<Worker> workers_;                  // by the thread's place in the arena
-  std::vector<std::uint8_t> crossing_;           // of the batch
+  CrossingFates crossing_;                       // of the batch
   TilerStatistics crossing_counts_;              // of the batches so far
   const SampleOffsets* offsets_ = nullptr;
   TiledFrame frame_;
