@@ -16,6 +16,8 @@ namespace {
 // Cells of a grid that are one item of work.
 // Long rows, so that the processor sees what is read next; their vertices fill vectors of 16.
 constexpr int kItemColumns = 255, kItemRows = 32;
+// Colours are asked for so many faces before they are used.
+constexpr std::size_t kFacesAhead = 16;
 constexpr std::size_t kMeshletVertices = 255, kMeshletTriangles = 255;
 constexpr std::size_t kLeastMeshletsOfItem = 8, kMostItemsOfMesh = 256;
 
@@ -168,6 +170,15 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
   CullCounts culled;
   for (int row = item.row; row < item.row + item.rows; ++row) {
     project(row + 1, *north);
+    // What the processor does not see coming: rows lie far apart.
+    if (row + 1 < item.row + item.rows) {
+      const std::size_t next = first_of(row + 2);
+      for (std::size_t n = 0; n < static_cast<std::size_t>(item.columns); n += 16) {
+        __builtin_prefetch(v.x.data() + next + n);
+        __builtin_prefetch(v.y.data() + next + n);
+        __builtin_prefetch(v.z.data() + next + n);
+      }
+    }
     const GridRow cells{south->snapped_x.data(),
                         south->snapped_y.data(),
                         north->snapped_x.data(),
@@ -186,6 +197,9 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
       return RasterVertex{north->x[n], north->y[n], north->inverse_u[n], north_color[n]};
     };
     for (std::size_t n = 0; n < faces.count; ++n) {
+      const std::uint32_t ahead = faces.face[std::min(n + kFacesAhead, faces.count - 1)] >> 1;
+      __builtin_prefetch(south_color + ahead);
+      __builtin_prefetch(north_color + ahead);
       const std::uint32_t cell = faces.face[n] >> 1, range = faces.tiles[n];
       const bool top = (faces.face[n] & 1) != 0;
       if (range == kExceptional) {
