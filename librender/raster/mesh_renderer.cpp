@@ -16,8 +16,6 @@ namespace {
 // Cells of a grid that are one item of work.
 // Long rows, so that the processor sees what is read next; their vertices fill vectors of 16.
 constexpr int kItemColumns = 255, kItemRows = 32;
-// Colours are asked for so many faces before they are used.
-constexpr std::size_t kFacesAhead = 16;
 constexpr std::size_t kMeshletVertices = 255, kMeshletTriangles = 255;
 constexpr std::size_t kLeastMeshletsOfItem = 8, kMostItemsOfMesh = 256;
 
@@ -168,6 +166,7 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
   RowRoom *south = &rows[0], *north = &rows[1];
   project(item.row, *south);
   CullCounts culled;
+  std::size_t first_kept = static_cast<std::size_t>(item.columns), last_kept = 0;  // of the row before
   for (int row = item.row; row < item.row + item.rows; ++row) {
     project(row + 1, *north);
     // What the processor does not see coming: rows lie far apart.
@@ -178,7 +177,11 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
         __builtin_prefetch(v.y.data() + next + n);
         __builtin_prefetch(v.z.data() + next + n);
       }
+      // Of the colours what the row before needed.
+      for (std::size_t n = first_kept; n <= last_kept; n += 16) __builtin_prefetch(v.rgba.data() + next + n);
     }
+    first_kept = static_cast<std::size_t>(item.columns);
+    last_kept = 0;
     const GridRow cells{south->snapped_x.data(),
                         south->snapped_y.data(),
                         north->snapped_x.data(),
@@ -197,10 +200,9 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
       return RasterVertex{north->x[n], north->y[n], north->inverse_u[n], north_color[n]};
     };
     for (std::size_t n = 0; n < faces.count; ++n) {
-      const std::uint32_t ahead = faces.face[std::min(n + kFacesAhead, faces.count - 1)] >> 1;
-      __builtin_prefetch(south_color + ahead);
-      __builtin_prefetch(north_color + ahead);
       const std::uint32_t cell = faces.face[n] >> 1, range = faces.tiles[n];
+      first_kept = std::min<std::size_t>(first_kept, cell);
+      last_kept = std::max<std::size_t>(last_kept, cell + 1);
       const bool top = (faces.face[n] & 1) != 0;
       if (range == kExceptional) {
         const std::size_t south_west = first_of(row) + cell, north_west = south_west + columns;
