@@ -8,7 +8,6 @@
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <numeric>
 
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
@@ -72,9 +71,7 @@ class TileRasterizer {
         buffer_(buffer),
         counts_(counts),
         columns_(std::min(kTileSide, tile.width - tile.j * kTileSide)),
-        rows_(std::min(kTileSide, tile.height - tile.i * kTileSide)),
-        tested_(hn::Zero(kInt)),
-        written_(hn::Zero(kInt)) {}
+        rows_(std::min(kTileSide, tile.height - tile.i * kTileSide)) {}
 
   void run(std::span<const RasterTriangle* const> triangles, std::size_t first,
            std::span<std::uint8_t> crossing) {
@@ -83,11 +80,19 @@ class TileRasterizer {
     } else {
       runBatches<true>(triangles, first, crossing);
     }
-    counts_.tested += static_cast<std::uint64_t>(sum(tested_));
-    counts_.written += static_cast<std::uint64_t>(sum(written_));
   }
 
  private:
+  struct Buffers {
+    float* inverse_u;
+    std::uint32_t* owner;
+    float* least;
+    std::uint8_t* wrote;
+  };
+  // Samples.
+  struct Drawn {
+    std::size_t tested = 0, written = 0;
+  };
   struct Outcome {
     bool covers = false, hidden = false;
   };
@@ -176,12 +181,6 @@ class TileRasterizer {
     counts_.hidden += here_alone & ~covers & hidden;
     counts_.no_sample += here_alone & ~(covers | hidden);
     crossing[number] |= static_cast<std::uint8_t>(covers * kCrossingCovers + hidden * kCrossingHidden);
-  }
-
-  static std::int64_t sum(Ints counts) {
-    alignas(64) std::int32_t lanes[kLanes];
-    hn::Store(counts, kInt, lanes);
-    return std::accumulate(lanes, lanes + kLanes, std::int64_t{0});
   }
 
   static HWY_INLINE Ints edgeSteps(const SetUpTriangles& batch, std::size_t t, std::size_t k, std::size_t v) {
@@ -288,26 +287,35 @@ class TileRasterizer {
   template <bool kCut>
   HWY_INLINE void drawList(const SetUpTriangles& batch, const PixelSteps* steps, BlockList& list,
                            std::uint8_t* covers) {
+    // In registers, which members would not be.
+    const Buffers buffers{buffer_.inverse_u.data(), buffer_.triangle.data(), buffer_.least.data(),
+                          buffer_.wrote.data()};
+    Drawn all;
     for (std::size_t n = 0; n < list.count; ++n) {
       const auto t = static_cast<std::size_t>(list.triangle[n]),
                  block = static_cast<std::size_t>(list.block[n]);
       const std::int32_t edge[3] = {list.edge[0][n], list.edge[1][n], list.edge[2][n]};
-      covers[t] |= drawBlock<kCut>(batch, t, steps[t], edge, list.inverse_u[n], block);
+      const Drawn drawn = drawBlock<kCut>(buffers, batch, t, steps[t], edge, list.inverse_u[n], block);
+      all.tested += drawn.tested;
+      all.written += drawn.written;
+      covers[t] |= drawn.tested != 0 ? 1 : 0;
     }
+    counts_.tested += all.tested;
+    counts_.written += all.written;
     list.count = 0;
   }
 
-  // `edge` and `u`: at the block's first pixel. True if it covers a sample.
+  // `edge` and `u`: at the block's first pixel.
   template <bool kCut>
-  HWY_INLINE bool drawBlock(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
-                            const std::int32_t (&edge)[3], float u, std::size_t block) {
-    float* const depth = buffer_.inverse_u.data() + block * kBlockPixels;
-    std::uint32_t* const owner = buffer_.triangle.data() + block * kBlockPixels;
+  HWY_INLINE Drawn drawBlock(const Buffers& buffers, const SetUpTriangles& batch, std::size_t t,
+                             const PixelSteps& steps, const std::int32_t (&edge)[3], float u,
+                             std::size_t block) const {
+    float* const depth = buffers.inverse_u + block * kBlockPixels;
+    std::uint32_t* const owner = buffers.owner + block * kBlockPixels;
     const Floats first = hn::Set(kFloat, u), least = hn::Set(kFloat, batch.least[t]),
                  greatest = hn::Set(kFloat, batch.greatest[t]);
     const std::uint32_t number = batch.number[t];
-    const Ints one = hn::Set(kInt, 1);
-    auto any_covered = hn::FirstN(kInt, 0), any_pass = any_covered;
+    Drawn drawn;
     Floats nearest = hn::Set(kFloat, 3.0e38F);
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto at = [&](std::size_t k) {
@@ -323,24 +331,22 @@ class TileRasterizer {
                 hn::Lt(hn::Load(kInt, kLaneJ + v * kLanes), hn::Set(kInt, columns_ - block_j * kBlockSide)),
                 hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows_ - block_i * kBlockSide))));
       }
-      any_covered = hn::Or(any_covered, covered);
-      tested_ = hn::Add(tested_, hn::IfThenElseZero(covered, one));
       const Floats old = hn::Load(kFloat, depth + v * kLanes);
       const Floats value =
           hn::Min(hn::Max(hn::Add(first, hn::Load(kFloat, steps.inverse_u + v * kLanes)), least), greatest);
       const auto pass = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
-      written_ = hn::Add(written_, hn::IfThenElseZero(pass, one));
       const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass), value, old);
       hn::Store(now, kFloat, depth + v * kLanes);
       nearest = hn::Min(nearest, now);
       const auto owners = hn::IfThenElse(hn::RebindMask(kUnsigned, pass), hn::Set(kUnsigned, number),
                                          hn::Load(kUnsigned, owner + v * kLanes));
       hn::Store(owners, kUnsigned, owner + v * kLanes);
-      any_pass = hn::Or(any_pass, pass);
+      drawn.tested += hn::CountTrue(kInt, covered);
+      drawn.written += hn::CountTrue(kInt, pass);
     }
-    buffer_.wrote[number] |= static_cast<std::uint8_t>(!hn::AllFalse(kInt, any_pass));
-    buffer_.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
-    return !hn::AllFalse(kInt, any_covered);
+    buffers.wrote[number] |= static_cast<std::uint8_t>(drawn.written);
+    buffers.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
+    return drawn;
   }
 
   const Tile& tile_;
@@ -348,7 +354,6 @@ class TileRasterizer {
   TileBuffer& buffer_;
   TileCounts& counts_;
   const int columns_, rows_;  // of the tile that lie in the picture
-  Ints tested_, written_;     // a lane each
 };
 
 void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
