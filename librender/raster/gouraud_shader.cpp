@@ -218,7 +218,7 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   };
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     numbers[count] = static_cast<std::uint32_t>(n);
-    count += buffer.wrote[n] != 0 ? 1 : 0;
+    count += buffer.wrote[n];
     if (count == kShadeBatch) flush();
   }
   flush();

@@ -87,11 +87,16 @@ class TileRasterizer {
     float* inverse_u;
     std::uint32_t* owner;
     float* least;
-    std::uint8_t* wrote;
   };
   // Samples.
   struct Drawn {
     std::size_t tested = 0, written = 0;
+  };
+  // Of a batch, and how far they were after each triangle's last block: two that are equal tell of a triangle
+  // without any. Noting that of each block would wait for the note of the block before.
+  struct Progress {
+    Drawn all;
+    std::uint32_t tested[kSetUpBatch] = {}, written[kSetUpBatch] = {};
   };
   struct Outcome {
     bool covers = false, hidden = false;
@@ -148,7 +153,8 @@ class TileRasterizer {
     PixelSteps steps[kSetUpBatch];
     BlockList list;
     list.count = 0;
-    std::uint8_t covers[kSetUpBatch] = {}, hidden[kSetUpBatch] = {};
+    Progress progress;
+    std::uint8_t hidden[kSetUpBatch] = {};
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t blocks = batch.blocks[t];
       const auto first_j = static_cast<std::int32_t>(blocks & 0xFF),
@@ -163,14 +169,22 @@ class TileRasterizer {
                     batch.at_first[t], columns, rows, list);
       if (columns > kPatchSide || rows > kPatchSide) {
         hidden[t] |= listOtherPatches<kCut>(batch, t, steps, first_i * kBlocksAcross + first_j, columns, rows,
-                                            list, covers);
+                                            list, progress);
       } else if (list.count >= BlockList::kLong) {
-        drawList<kCut>(batch, steps, list, covers);
+        drawList<kCut>(batch, steps, list, progress);
       }
     }
-    drawList<kCut>(batch, steps, list, covers);
-    for (std::size_t t = 0; t < count; ++t)
-      settle({covers[t] != 0, hidden[t] != 0}, triangles[batch.number[t]]->crossing, crossing);
+    drawList<kCut>(batch, steps, list, progress);
+    std::uint32_t tested = 0, written = 0;
+    for (std::size_t t = 0; t < count; ++t) {
+      const std::uint32_t number = batch.number[t];
+      settle({progress.tested[t] > tested, hidden[t] != 0}, triangles[number]->crossing, crossing);
+      buffer_.wrote[number] = progress.written[t] > written ? 1 : 0;
+      tested = std::max(tested, progress.tested[t]);
+      written = std::max(written, progress.written[t]);
+    }
+    counts_.tested += progress.all.tested;
+    counts_.written += progress.all.written;
   }
 
   // Without branches: fates follow each other at random.
@@ -220,11 +234,11 @@ class TileRasterizer {
   template <bool kCut>
   HWY_NOINLINE bool listOtherPatches(const SetUpTriangles& batch, std::size_t t, const PixelSteps* steps,
                                      std::int32_t first_block, std::int32_t columns, std::int32_t rows,
-                                     BlockList& list, std::uint8_t* covers) {
+                                     BlockList& list, Progress& progress) {
     bool hidden = false;
     for (std::int32_t i = 0; i < rows; i += kPatchSide) {
       for (std::int32_t j = 0; j < columns; j += kPatchSide) {
-        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, covers);
+        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
         if (i == 0 && j == 0) continue;
         const auto edge = [&](std::size_t k) {
           return batch.at_first_block[k][t] + kBlockSide * (batch.per_j[k][t] * j + batch.per_i[k][t] * i);
@@ -286,11 +300,10 @@ class TileRasterizer {
 
   template <bool kCut>
   HWY_INLINE void drawList(const SetUpTriangles& batch, const PixelSteps* steps, BlockList& list,
-                           std::uint8_t* covers) {
+                           Progress& progress) const {
     // In registers, which members would not be.
-    const Buffers buffers{buffer_.inverse_u.data(), buffer_.triangle.data(), buffer_.least.data(),
-                          buffer_.wrote.data()};
-    Drawn all;
+    const Buffers buffers{buffer_.inverse_u.data(), buffer_.triangle.data(), buffer_.least.data()};
+    Drawn all = progress.all;
     for (std::size_t n = 0; n < list.count; ++n) {
       const auto t = static_cast<std::size_t>(list.triangle[n]),
                  block = static_cast<std::size_t>(list.block[n]);
@@ -298,10 +311,10 @@ class TileRasterizer {
       const Drawn drawn = drawBlock<kCut>(buffers, batch, t, steps[t], edge, list.inverse_u[n], block);
       all.tested += drawn.tested;
       all.written += drawn.written;
-      covers[t] |= drawn.tested != 0 ? 1 : 0;
+      progress.tested[t] = static_cast<std::uint32_t>(all.tested);
+      progress.written[t] = static_cast<std::uint32_t>(all.written);
     }
-    counts_.tested += all.tested;
-    counts_.written += all.written;
+    progress.all = all;
     list.count = 0;
   }
 
@@ -344,7 +357,6 @@ class TileRasterizer {
       drawn.tested += hn::CountTrue(kInt, covered);
       drawn.written += hn::CountTrue(kInt, pass);
     }
-    buffers.wrote[number] |= static_cast<std::uint8_t>(drawn.written);
     buffers.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
     return drawn;
   }

@@ -38,7 +38,7 @@ struct alignas(64) TileBuffer {
   std::array<std::uint32_t, kTileSide * kTileSide> triangle;
   // Of a block's 1/U; never too great. Blocks below and right of the last may be asked about.
   std::array<float, kBlocksAcross * kBlocksAcross + 4 * kBlocksAcross> least;
-  std::vector<std::uint8_t> wrote;  // not 0: some sample was the triangle's, at least for a while
+  std::vector<std::uint8_t> wrote;  // 1: some sample was the triangle's, at least for a while; else 0
 
   void clear();
 };
