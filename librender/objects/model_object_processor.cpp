@@ -113,8 +113,8 @@ ModelFaces modelFaces(const ModelMesh& mesh, const ModelTransform& to_earth, con
     const double of_face = mesh.curveShaded() ? 0 : part.intensity(behind ? normal * -1 : normal);
     for (std::size_t k = 0; k < 3; ++k) {
       const double intensity = !mesh.curveShaded() ? of_face
-                               : behind             ? lit_behind[triangle[k]]
-                                                    : lit[triangle[k]];
+                               : behind            ? lit_behind[triangle[k]]
+                                                   : lit[triangle[k]];
       face.color[k] = decoded(mesh.colors[mesh.colored_by_vertex ? triangle[k] : t]) * intensity;
     }
     // Seen from behind, and seen in a mirror, the order of the corners is turned round.

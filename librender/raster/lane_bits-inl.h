@@ -1,4 +1,5 @@
-// A mask of vectors of 32-bit lanes, up to 16, as a bit for each lane. Included once for each instruction set.
+// A mask of vectors of 32-bit lanes, up to 16, as a bit for each lane. Included once for each instruction
+// set.
 #if defined(DELTAZ_LANE_BITS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DELTAZ_LANE_BITS_INL_H
 #undef DELTAZ_LANE_BITS_INL_H

@@ -8,10 +8,9 @@
 //
 // Pixels lie in blocks of 4 x 4, so that a block is one vector of 16 and one cache line. The least 1/U of
 // every block is kept: blocks that a triangle lies behind are passed over (hierarchical z; Greene 1993),
-// which changes no pixel. Which blocks a triangle may show in is found for 4 x 4 of them at once (after Abrash
-// 2009); the blocks of a batch of triangles are then drawn in one loop. The bits are the same on every vector
-// width.
-// Thread-safety: different tiles from different threads.
+// which changes no pixel. Which blocks a triangle may show in is found for 4 x 4 of them at once (after
+// Abrash 2009); the blocks of a batch of triangles are then drawn in one loop. The bits are the same on every
+// vector width. Thread-safety: different tiles from different threads.
 #pragma once
 
 #include <array>
@@ -64,7 +63,8 @@ struct Tile {
 };
 
 // Draws triangles[first] and those that follow; owners in `buffer` are indices into `triangles`. Adds to
-// `counts`, and notes what becomes of triangles by RasterTriangle::crossing (crossing_fates.h); 0 has an entry.
+// `counts`, and notes what becomes of triangles by RasterTriangle::crossing (crossing_fates.h); 0 has an
+// entry.
 void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                    std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts);
 

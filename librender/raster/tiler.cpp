@@ -98,7 +98,8 @@ const TiledFrame& Tiler::settle() {
   tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t t) {
     frame_.tiles[t].faces_.clear();
     frame_.tiles[t].owner_.clear();
-    if (open_[t] && !open_[t]->triangles.empty()) settleTile(*open_[t], workers_[workerNumber()], frame_.tiles[t]);
+    if (open_[t] && !open_[t]->triangles.empty())
+      settleTile(*open_[t], workers_[workerNumber()], frame_.tiles[t]);
   });
   frame_.statistics = crossing_counts_;
   for (const Worker& worker : workers_) {

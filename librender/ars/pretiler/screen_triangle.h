@@ -32,8 +32,8 @@ struct ScreenPosition {
 struct ScreenPlanes {
   ScreenPosition anchor;  // one of the triangle's own vertices, in front of the hither plane
   ScreenPlane inverse_u;
-  std::array<ScreenPlane, kColors> color;         // linear on the screen, as the machine's is
-  std::array<ScreenPlane, kColors> color_over_u;  // of colour linear in space, times 1/U
+  std::array<ScreenPlane, kColors> color;              // linear on the screen, as the machine's is
+  std::array<ScreenPlane, kColors> color_over_u;       // of colour linear in space, times 1/U
   double least_inverse_u = 0, greatest_inverse_u = 0;  // over what lies in front of the hither plane
 };
 

@@ -127,7 +127,8 @@ Drawn draw(const std::vector<RasterTriangle>& triangles, const SampleOffsets* of
   }
   Drawn drawn;
   drawn.buffer->clear();
-  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, 0, {}, *drawn.buffer, drawn.counts);
+  std::array<std::uint8_t, 1> crossing{};
+  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, 0, crossing, *drawn.buffer, drawn.counts);
   return drawn;
 }
 
@@ -253,7 +254,8 @@ TEST(tile_rasterizer, every_vector_width_gives_the_same_buffer_and_counts) {
       }
       EXPECT_EQ(drawn.buffer->inverse_u, first->buffer->inverse_u);
       EXPECT_EQ(drawn.buffer->least, first->buffer->least);
-      EXPECT_EQ(drawn.buffer->whole, first->buffer->whole);
+      EXPECT_EQ(drawn.buffer->triangle, first->buffer->triangle);
+      EXPECT_EQ(drawn.buffer->wrote, first->buffer->wrote);
       EXPECT_EQ(drawn.counts.tested, first->counts.tested);
       EXPECT_EQ(drawn.counts.written, first->counts.written);
       EXPECT_EQ(drawn.counts.hidden, first->counts.hidden);
@@ -282,9 +284,10 @@ TEST(tile_rasterizer, the_nearest_triangle_owns_each_pixel_and_of_equals_the_fir
       }
     }
     ASSERT_EQ(together.buffer->inverse_u[pixel], best);
-    if (best == 0) continue;
-    const std::uint32_t whole = together.buffer->whole[pixel / kBlockPixels];
-    ASSERT_EQ(whole != kNoTriangle ? whole : together.buffer->triangle[pixel], nearest) << pixel;
+    ASSERT_EQ(together.buffer->triangle[pixel], nearest) << pixel;
+    if (nearest != kNoTriangle) {
+      ASSERT_EQ(together.buffer->wrote[nearest], 1) << pixel;
+    }
   }
 }
 
@@ -297,7 +300,8 @@ TEST(tile_rasterizer, pixels_beyond_the_picture_are_left_alone) {
     TileBuffer buffer;
     buffer.clear();
     TileCounts counts;
-    rasterizeTile({1, 1, kWidth, kHeight}, triangles, 0, {}, buffer, counts);
+    std::array<std::uint8_t, 1> crossing{};
+    rasterizeTile({1, 1, kWidth, kHeight}, triangles, 0, crossing, buffer, counts);
     EXPECT_EQ(counts.tested, 6U * 3U);
     for (int i = 0; i < kTileSide; ++i) {
       for (int j = 0; j < kTileSide; ++j)
