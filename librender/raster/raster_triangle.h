@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace deltaz {
@@ -38,5 +39,6 @@ struct alignas(64) RasterTriangle {
   std::uint32_t crossing;    // 0, or 1 + its number among those that touch several tiles
 };
 static_assert(sizeof(RasterTriangle) == 64);
+static_assert(offsetof(RasterTriangle, node) == 48 && offsetof(RasterTriangle, crossing) == 56);
 
 }  // namespace deltaz

@@ -98,8 +98,9 @@ class TileRasterizer {
     Drawn all;
     std::uint32_t tested[kSetUpBatch] = {}, written[kSetUpBatch] = {};
   };
-  struct Outcome {
-    bool covers = false, hidden = false;
+  // Of up to 32 triangles, a bit each: those that cover a sample, those that were found hidden somewhere.
+  struct Fates {
+    std::uint32_t asked, covers, hidden;
   };
 
   // `kCut`: the picture ends inside blocks of the tile.
@@ -116,15 +117,14 @@ class TileRasterizer {
         hwy::Prefetch(triangles[t]);
       const TriangleSetUp::Dropped dropped = set_up_.place(
           triangles.data() + first, count, static_cast<std::uint32_t>(first), buffer_.least.data(), placed);
-      for (std::uint32_t left = dropped.hidden | dropped.beside; left != 0; left &= left - 1) {
-        const auto t = static_cast<std::size_t>(std::countr_zero(left));
-        settle({false, (dropped.hidden >> t & 1) != 0}, triangles[first + t]->crossing, crossing);
-      }
+      settle(
+          {dropped.hidden | dropped.beside, 0, dropped.hidden}, dropped.crossing,
+          [&](std::size_t t) { return triangles[first + t]->crossing; }, crossing);
       if (placed.count < kSetUpBatch) continue;
-      drawBatch<kCut>(placed, kSetUpBatch, triangles, crossing);
+      drawBatch<kCut>(placed, kSetUpBatch, crossing);
       dropFirst(placed);
     }
-    if (placed.count > 0) drawBatch<kCut>(placed, placed.count, triangles, crossing);
+    if (placed.count > 0) drawBatch<kCut>(placed, placed.count, crossing);
   }
 
   // Moves those behind the first kSetUpBatch, which are fewer than that, to the front.
@@ -141,12 +141,12 @@ class TileRasterizer {
     }
     move(placed.blocks);
     move(placed.number);
+    move(placed.crossing);
     placed.count -= kSetUpBatch;
   }
 
   template <bool kCut>
   HWY_INLINE void drawBatch(const PlacedTriangles& placed, std::size_t count,
-                            std::span<const RasterTriangle* const> triangles,
                             std::span<std::uint8_t> crossing) {
     SetUpTriangles batch;
     set_up_.setUp(placed, batch);
@@ -154,7 +154,7 @@ class TileRasterizer {
     BlockList list;
     list.count = 0;
     Progress progress;
-    std::uint8_t hidden[kSetUpBatch] = {};
+    std::uint32_t hidden = 0;
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t blocks = batch.blocks[t];
       const auto first_j = static_cast<std::int32_t>(blocks & 0xFF),
@@ -163,38 +163,49 @@ class TileRasterizer {
                  rows = static_cast<std::int32_t>(blocks >> 24) - first_i + 1;
       setSteps(batch, t, steps[t]);
       // Most triangles touch no other patch than their first.
-      hidden[t] =
+      bool behind =
           listPatch(batch, t, steps[t], first_i * kBlocksAcross + first_j,
                     {batch.at_first_block[0][t], batch.at_first_block[1][t], batch.at_first_block[2][t]},
                     batch.at_first[t], columns, rows, list);
       if (columns > kPatchSide || rows > kPatchSide) {
-        hidden[t] |= listOtherPatches<kCut>(batch, t, steps, first_i * kBlocksAcross + first_j, columns, rows,
-                                            list, progress);
+        behind |= listOtherPatches<kCut>(batch, t, steps, first_i * kBlocksAcross + first_j, columns, rows,
+                                         list, progress);
       } else if (list.count >= BlockList::kLong) {
         drawList<kCut>(batch, steps, list, progress);
       }
+      hidden |= (behind ? 1U : 0U) << t;
     }
     drawList<kCut>(batch, steps, list, progress);
-    std::uint32_t tested = 0, written = 0;
+    std::uint32_t tested = 0, written = 0, covers = 0, crosses = 0;
     for (std::size_t t = 0; t < count; ++t) {
-      const std::uint32_t number = batch.number[t];
-      settle({progress.tested[t] > tested, hidden[t] != 0}, triangles[number]->crossing, crossing);
-      buffer_.wrote[number] = progress.written[t] > written ? 1 : 0;
+      covers |= (progress.tested[t] > tested ? 1U : 0U) << t;
+      crosses |= (placed.crossing[t] != 0 ? 1U : 0U) << t;
+      buffer_.wrote[batch.number[t]] = progress.written[t] > written ? 1 : 0;
       tested = std::max(tested, progress.tested[t]);
       written = std::max(written, progress.written[t]);
     }
     counts_.tested += progress.all.tested;
     counts_.written += progress.all.written;
+    settle(
+        {(1U << count) - 1, covers, hidden}, crosses, [&](std::size_t t) { return placed.crossing[t]; },
+        crossing);
   }
 
-  // Without branches: fates follow each other at random.
-  HWY_INLINE void settle(Outcome outcome, std::uint32_t number, std::span<std::uint8_t> crossing) {
-    const std::uint64_t covers = outcome.covers ? 1 : 0, hidden = outcome.hidden ? 1 : 0;
-    const std::uint64_t here_alone = number == 0 ? 1 : 0;
-    counts_.drawn += here_alone & (covers | hidden);
-    counts_.hidden += here_alone & ~covers & hidden;
-    counts_.no_sample += here_alone & ~(covers | hidden);
-    crossing[number] |= static_cast<std::uint8_t>(covers * kCrossingCovers + hidden * kCrossingHidden);
+  // Counts triangles of this tile alone all at once, for their fates follow each other at random; what
+  // becomes of the others is noted. `crosses`: a bit for each of these; number(t): RasterTriangle::crossing.
+  template <class Number>
+  HWY_INLINE void settle(const Fates& fates, std::uint32_t crosses, Number number,
+                         std::span<std::uint8_t> crossing) {
+    const std::uint32_t drawn = fates.covers | fates.hidden, here = fates.asked & ~crosses;
+    const auto count = [](std::uint32_t bits) { return static_cast<std::uint64_t>(std::popcount(bits)); };
+    counts_.drawn += count(here & drawn);
+    counts_.hidden += count(here & fates.hidden & ~fates.covers);
+    counts_.no_sample += count(here & ~drawn);
+    for (std::uint32_t left = fates.asked & crosses & drawn; left != 0; left &= left - 1) {
+      const auto t = static_cast<std::size_t>(std::countr_zero(left));
+      crossing[number(t)] |= static_cast<std::uint8_t>((fates.covers >> t & 1) * kCrossingCovers +
+                                                       (fates.hidden >> t & 1) * kCrossingHidden);
+    }
   }
 
   static HWY_INLINE Ints edgeSteps(const SetUpTriangles& batch, std::size_t t, std::size_t k, std::size_t v) {

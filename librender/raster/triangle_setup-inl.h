@@ -35,6 +35,7 @@ class TriangleSetUp {
   // without a pixel of the tile in the bounding box.
   struct Dropped {
     std::uint32_t hidden = 0, beside = 0;  // a bit each
+    std::uint32_t crossing = 0;            // of all that were asked about: those that touch several tiles
   };
 
   explicit TriangleSetUp(const Tile& tile) : tile_(tile) {}
@@ -101,6 +102,11 @@ class TriangleSetUp {
         append(s, sx[k], placed.snapped_x[k]);
         append(s, sy[k], placed.snapped_y[k]);
       }
+      hn::Vec<UnsignedTag> name[4];
+      loadFours(
+          u, [&](std::size_t n) { return &triangles[std::min(t + n, count - 1)]->node; }, name);
+      dropped.crossing |= laneBits(hn::And(hn::RebindMask(u, asked), hn::Ne(name[2], hn::Zero(u)))) << t;
+      append(u, name[2], placed.crossing);
       const Ints blocks = hn::Or(hn::Or(first_j, hn::ShiftLeft<8>(first_i)),
                                  hn::Or(hn::ShiftLeft<16>(last_j), hn::ShiftLeft<24>(last_i)));
       append(u, hn::BitCast(u, blocks), placed.blocks);

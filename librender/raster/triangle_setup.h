@@ -22,7 +22,8 @@ struct alignas(64) PlacedTriangles {
   std::int32_t snapped_x[3][kSetUpRoom], snapped_y[3][kSetUpRoom];
   // Blocks of the tile that the bounding box touches, first_j | first_i << 8 | last_j << 16 | last_i << 24.
   std::uint32_t blocks[kSetUpRoom];
-  std::uint32_t number[kSetUpRoom];  // among the tile's triangles
+  std::uint32_t number[kSetUpRoom];    // among the tile's triangles
+  std::uint32_t crossing[kSetUpRoom];  // RasterTriangle::crossing
   std::size_t count;
 };
 
