@@ -27,7 +27,7 @@ class CrossingFates {
     for (std::vector<std::uint8_t>& notes : notes_) notes.assign(numbers, 0);
   }
 
-  // By RasterTriangle::crossing. What is noted for 0, which is no crossing triangle's, is not counted.
+  // By RasterTriangle::crossing.
   std::span<std::uint8_t> notesOf(std::size_t worker) { return notes_[worker]; }
 
   Counts counted() const {

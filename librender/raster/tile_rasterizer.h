@@ -63,8 +63,8 @@ struct Tile {
 };
 
 // Draws triangles[first] and those that follow; owners in `buffer` are indices into `triangles`. Adds to
-// `counts`, and notes what becomes of triangles by RasterTriangle::crossing (crossing_fates.h); 0 has an
-// entry.
+// `counts`, and notes what becomes of triangles that touch several tiles in `crossing`, by
+// RasterTriangle::crossing (crossing_fates.h).
 void rasterizeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                    std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts);
 

@@ -133,9 +133,8 @@ std::vector<double> drawnCoverage(const EdgeScene& scene, const Sampling& sampli
   for (int tile = 0; tile < tiles * tiles; ++tile) {
     const int tile_j = tile % tiles, tile_i = tile / tiles;
     TileCounts counts;
-    std::array<std::uint8_t, 1> crossing{};
     buffer->clear();
-    rasterizeTile({tile_j, tile_i, side, side, grid.offsets()}, pointers, 0, crossing, *buffer, counts);
+    rasterizeTile({tile_j, tile_i, side, side, grid.offsets()}, pointers, 0, {}, *buffer, counts);
     for (int i = 0; i < std::min(kTileSide, side - tile_i * kTileSide); ++i) {
       for (int j = 0; j < std::min(kTileSide, side - tile_j * kTileSide); ++j) {
         covered[static_cast<std::size_t>((tile_i * kTileSide + i) * side + tile_j * kTileSide + j)] =

@@ -17,14 +17,6 @@ TEST(crossing_fates, a_triangle_that_covers_a_sample_anywhere_is_not_hidden) {
   EXPECT_EQ(counts.hidden, 1U);
 }
 
-TEST(crossing_fates, what_is_noted_for_triangles_of_one_tile_is_not_counted) {
-  CrossingFates fates;
-  fates.reset(1, 3);
-  fates.notesOf(0)[0] = kCrossingCovers | kCrossingHidden;
-  EXPECT_EQ(fates.counted().covering, 0U);
-  EXPECT_EQ(fates.counted().hidden, 0U);
-}
-
 TEST(crossing_fates, a_new_frame_begins_with_nothing) {
   CrossingFates fates;
   fates.reset(3, 9);

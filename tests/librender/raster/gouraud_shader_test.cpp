@@ -73,8 +73,7 @@ TEST(gouraud_shader, every_pixel_has_its_triangles_colour_in_perspective) {
         const auto buffer = std::make_unique<TileBuffer>();
         buffer->clear();
         TileCounts counts;
-        std::array<std::uint8_t, 1> crossing{};
-        rasterizeTile(tile, pointers, 0, crossing, *buffer, counts);
+        rasterizeTile(tile, pointers, 0, {}, *buffer, counts);
         ColorFrame frame;
         frame.background = kBehindAll;
         frame.resize(width, height);

@@ -127,8 +127,7 @@ Drawn draw(const std::vector<RasterTriangle>& triangles, const SampleOffsets* of
   }
   Drawn drawn;
   drawn.buffer->clear();
-  std::array<std::uint8_t, 1> crossing{};
-  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, 0, crossing, *drawn.buffer, drawn.counts);
+  rasterizeTile({0, 0, kSide, kSide, offsets}, kept, 0, {}, *drawn.buffer, drawn.counts);
   return drawn;
 }
 
@@ -300,8 +299,7 @@ TEST(tile_rasterizer, pixels_beyond_the_picture_are_left_alone) {
     TileBuffer buffer;
     buffer.clear();
     TileCounts counts;
-    std::array<std::uint8_t, 1> crossing{};
-    rasterizeTile({1, 1, kWidth, kHeight}, triangles, 0, crossing, buffer, counts);
+    rasterizeTile({1, 1, kWidth, kHeight}, triangles, 0, {}, buffer, counts);
     EXPECT_EQ(counts.tested, 6U * 3U);
     for (int i = 0; i < kTileSide; ++i) {
       for (int j = 0; j < kTileSide; ++j)
