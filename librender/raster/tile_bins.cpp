@@ -19,7 +19,7 @@ void TileBins::Writer::Bin::close() {
 RasterTriangle* TileBins::Writer::takeChunk() {
   const std::size_t slab = chunks_taken_ / kChunksOfSlab, chunk = chunks_taken_ % kChunksOfSlab;
   if (slab == slabs_.size())
-    slabs_.push_back(std::make_unique_for_overwrite<RasterTriangle[]>(kChunk * kChunksOfSlab));
+    slabs_.push_back(std::make_unique_for_overwrite<RasterTriangle[]>(kChunk * kChunksOfSlab + kAskedAhead));
   ++chunks_taken_;
   return slabs_[slab].get() + chunk * kChunk;
 }

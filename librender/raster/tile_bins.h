@@ -63,6 +63,7 @@ class TileBins {
 
    private:
     friend class TileBins;
+    static constexpr std::size_t kAskedAhead = 4;  // triangles; slabs have as many to spare
     struct Bin {
       RasterTriangle* next = nullptr;
       RasterTriangle* end = nullptr;
@@ -76,8 +77,8 @@ class TileBins {
     }
     RasterTriangle* next(Bin& bin) {
       if (bin.next == bin.end || bin.item != item_) open(bin);
-      // Where the next one goes, which was last read a frame ago.
-      __builtin_prefetch(bin.next + 4, 1);
+      // Where later ones go, which was last read a frame ago.
+      __builtin_prefetch(bin.next + kAskedAhead, 1);
       return bin.next++;
     }
     void open(Bin& bin);
