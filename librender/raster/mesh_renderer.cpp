@@ -190,9 +190,8 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
                         nullptr};
     CulledFaces faces{face.data(), tiles.data(), 0};
     cullGridRow(cells, view.width, view.height, faces, culled);
-    const std::uint32_t *const south_color = mesh.vertices.rgba.data() + first_of(row), *const north_color =
-                                                                                            south_color +
-                                                                                            columns;
+    const std::uint32_t* const south_color = v.rgba.data() + first_of(row);
+    const std::uint32_t* const north_color = south_color + columns;
     const auto southern = [&](std::size_t n) {
       return RasterVertex{south->x[n], south->y[n], south->inverse_u[n], south_color[n]};
     };

@@ -83,6 +83,7 @@ class TileRasterizer {
   }
 
  private:
+  // Of TileBuffer, by pixel, and the least by block.
   struct Buffers {
     float* inverse_u;
     std::uint32_t* owner;
