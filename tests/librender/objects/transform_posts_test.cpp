@@ -234,7 +234,7 @@ TEST(TransformPosts, a_post_that_two_tiles_share_is_apart_by_no_more_than_both_b
 TEST(TransformPixelBound, holds_for_every_point_in_the_picture) {
   for (const TransformKind kind : kTransformKinds) {
     double closest = 0;
-    EXPECT_TRUE(rc::check(std::string(transformName(kind)), [&] {
+    const auto holds = [&] {
       SyntheticGridOptions options;
       options.seed = *rc::gen::inRange<std::uint32_t>(1, 1000);
       options.spacing_latitude = options.spacing_longitude = {*rc::gen::element<std::int64_t>(1, 3, 30), 1};
@@ -275,6 +275,10 @@ TEST(TransformPixelBound, holds_for_every_point_in_the_picture) {
           }
         }
       }
+    };
+    // With one case at a time three runs of a hundred come nowhere near the bound.
+    EXPECT_TRUE(rc::check(std::string(transformName(kind)), [&] {
+      for (int n = 0; n < 8; ++n) holds();
     }));
     std::printf("%s: at most %.3f of its bound in pixels\n", std::string(transformName(kind)).c_str(),
                 closest);
