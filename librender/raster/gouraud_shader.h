@@ -2,9 +2,10 @@
 // perspective: the plain shading of meshes whose RasterVertex::payload is an RGBA colour, a byte each, red
 // lowest.
 //
-// Only what is seen is coloured, each pixel once. Weights are
-// kept within the triangle, as the depth is. Same bits on every vector width. Thread-safety: different tiles
-// from different threads.
+// Only what is seen is coloured, each pixel once. A channel times 1/U is a plane on the screen, set up in
+// double and evaluated in single precision; divided by the pixel's 1/U it stays within the range of the
+// triangle's corners, as the depth does. Same bits on every vector width. Thread-safety: different tiles from
+// different threads.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,9 @@ struct ColorFrame {
   void resize(int new_width, int new_height);
 };
 
-// What shading needs of a triangle: its first vertex (x, y); the gradients of the weights of the second and
-// of the third vertex, each times 1/U, planes through 0 at the first vertex; the colour of the first vertex,
-// 0 to 255, and what each of the others adds to it.
+// What shading needs of a triangle: of red, green and blue, 0 to 255, each times 1/U, the change a pixel to
+// the right, the change a pixel down and the value at the tile's first pixel; then the bits of the least and
+// of the greatest colour of its corners, channel by channel, opaque. Twelve values are used.
 struct alignas(64) ShadingPlanes {
   float value[16];
 };

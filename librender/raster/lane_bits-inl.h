@@ -18,8 +18,8 @@ HWY_INLINE std::uint32_t laneBits(
     hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::CappedTag<std::uint32_t, 16>> mask) {
   std::uint8_t bytes[8] = {};
   hwy::HWY_NAMESPACE::StoreMaskBits(hwy::HWY_NAMESPACE::CappedTag<std::uint32_t, 16>(), mask, bytes);
-  std::uint32_t result = 0;
-  std::memcpy(&result, bytes, 4);
+  std::uint16_t result = 0;
+  std::memcpy(&result, bytes, sizeof(result));
   return result;
 }
 

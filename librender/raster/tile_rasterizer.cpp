@@ -63,6 +63,17 @@ constexpr hn::RebindToUnsigned<FloatTag> kUnsigned;
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 constexpr std::size_t kVectors = kBlockPixels / kLanes;  // of a block
 
+// MinOfLanes copies its result to all lanes of wide vectors, which costs as much as a step of the search.
+template <class D>
+HWY_INLINE float leastLane(D d, hn::Vec<D> values) {
+  if constexpr (hn::MaxLanes(D()) <= 4) {
+    return hn::GetLane(hn::MinOfLanes(d, values));
+  } else {
+    const hn::Half<D> half;
+    return leastLane(half, hn::Min(LowerHalf(half, values), UpperHalf(half, values)));
+  }
+}
+
 class TileRasterizer {
  public:
   TileRasterizer(const Tile& tile, TileBuffer& buffer, TileCounts& counts)
@@ -341,7 +352,7 @@ class TileRasterizer {
                  greatest = hn::Set(kFloat, batch.greatest[t]);
     const std::uint32_t number = batch.number[t];
     Drawn drawn;
-    Floats nearest = hn::Set(kFloat, 3.0e38F);
+    Floats furthest = hn::Zero(kFloat);
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto at = [&](std::size_t k) {
         return hn::Add(hn::Set(kInt, edge[k]), hn::Load(kInt, steps.edge[k] + v * kLanes));
@@ -362,14 +373,14 @@ class TileRasterizer {
       const auto pass = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
       const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass), value, old);
       hn::Store(now, kFloat, depth + v * kLanes);
-      nearest = hn::Min(nearest, now);
+      furthest = v == 0 ? now : hn::Min(furthest, now);
       const auto owners = hn::IfThenElse(hn::RebindMask(kUnsigned, pass), hn::Set(kUnsigned, number),
                                          hn::Load(kUnsigned, owner + v * kLanes));
       hn::Store(owners, kUnsigned, owner + v * kLanes);
       drawn.tested += hn::CountTrue(kInt, covered);
       drawn.written += hn::CountTrue(kInt, pass);
     }
-    buffers.least[block] = hn::GetLane(hn::MinOfLanes(kFloat, nearest));
+    buffers.least[block] = leastLane(kFloat, furthest);
     return drawn;
   }
 

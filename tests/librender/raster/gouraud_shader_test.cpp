@@ -90,6 +90,14 @@ TEST(gouraud_shader, every_pixel_has_its_triangles_colour_in_perspective) {
               continue;
             }
             ASSERT_EQ(frame.rgba[pixel] >> 24, 0xFFU);
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+              const auto of = [&](std::uint32_t rgba) { return rgba >> (8 * channel) & 0xFF; };
+              const auto& corner = triangles[owner].vertex;
+              const auto [least, greatest] =
+                  std::minmax({of(corner[0].payload), of(corner[1].payload), of(corner[2].payload)});
+              ASSERT_GE(of(frame.rgba[pixel]), least) << j << ' ' << i;
+              ASSERT_LE(of(frame.rgba[pixel]), greatest) << j << ' ' << i;
+            }
             const auto color = exactlyShaded(triangles[owner], j - (width - 1) * 0.5, i - (height - 1) * 0.5);
             if (!color) continue;
             ++compared;
