@@ -1,5 +1,6 @@
-// Moves the chosen lanes of vectors to the front, in order. Where the processor has no instruction for it,
-// the places are looked up once for all vectors that are moved alike. Included once for each instruction set.
+// Moves the chosen lanes of vectors to the front, in order. Where each lane comes from is found once for all
+// vectors that are moved alike: instructions that move lanes to the front take several times as long as
+// permutations. Included once for each instruction set.
 #if defined(DELTAZ_COMPACTION_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DELTAZ_COMPACTION_INL_H
 #undef DELTAZ_COMPACTION_INL_H
@@ -31,6 +32,8 @@ class Compaction {
       const std::uint8_t* const places =
           kLanes == 8 ? kPlacesOf8[bits[0]].data() : kPlacesOf4[bits[0] & 15].data();
       places_ = hn::PromoteTo(IntTag(), hn::LoadU(hn::Rebind<std::uint8_t, IntTag>(), places));
+    } else if constexpr (kLanes == 16) {
+      places_ = hn::Compress(hn::Iota(IntTag(), 0), chosen);
     }
   }
 
@@ -40,12 +43,10 @@ class Compaction {
   template <class D>
   HWY_INLINE void store(D d, hwy::HWY_NAMESPACE::Vec<D> values, hwy::HWY_NAMESPACE::TFromD<D>* to) const {
     namespace hn = hwy::HWY_NAMESPACE;
-    if constexpr (kLanes == 4 || kLanes == 8) {
-      hn::StoreU(hn::TableLookupLanes(values, hn::IndicesFromVec(d, places_)), d, to);
-    } else if constexpr (kLanes == 1) {
+    if constexpr (kLanes == 1) {
       hn::StoreU(values, d, to);
     } else {
-      hn::StoreU(hn::Compress(values, hn::RebindMask(d, chosen_)), d, to);
+      hn::StoreU(hn::TableLookupLanes(values, hn::IndicesFromVec(d, places_)), d, to);
     }
   }
 

@@ -38,6 +38,17 @@ struct RowRoom {
   static constexpr std::size_t kVertices = kItemColumns + 1 + 2 * kRowPadding;
   alignas(64) std::array<float, kVertices> x, y, inverse_u;
   alignas(64) std::array<std::int32_t, kVertices> snapped_x, snapped_y;
+  // Of some: what triangles are made of.
+  alignas(64) std::array<RasterVertex, kVertices> vertex;
+  std::size_t first_whole = 0, end_whole = 0;
+
+  // Makes whole vertices of those from `first` up to `end`.
+  void makeWhole(std::size_t first, std::size_t end, const std::uint32_t* colors) {
+    if (first >= first_whole && end <= end_whole) return;
+    for (std::size_t n = first; n < end; ++n) vertex[n] = {x[n], y[n], inverse_u[n], colors[n]};
+    first_whole = first;
+    end_whole = end;
+  }
 };
 
 TileRange unpacked(std::uint32_t range) {
@@ -158,6 +169,7 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
   const MeshVertices& v = mesh.vertices;
   const auto project = [&](int row, RowRoom& room) {
     const std::size_t first = first_of(row);
+    room.first_whole = room.end_whole = 0;
     projection.project(v.x.data() + first, v.y.data() + first, v.z.data() + first,
                        static_cast<std::size_t>(item.columns) + 1,
                        ProjectedArrays{room.x.data(), room.y.data(), room.inverse_u.data(),
@@ -192,16 +204,15 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
     cullGridRow(cells, view.width, view.height, faces, culled);
     const std::uint32_t* const south_color = v.rgba.data() + first_of(row);
     const std::uint32_t* const north_color = south_color + columns;
-    const auto southern = [&](std::size_t n) {
-      return RasterVertex{south->x[n], south->y[n], south->inverse_u[n], south_color[n]};
-    };
-    const auto northern = [&](std::size_t n) {
-      return RasterVertex{north->x[n], north->y[n], north->inverse_u[n], north_color[n]};
-    };
+    for (std::size_t n = 0; n < faces.count; ++n) {
+      const std::size_t cell = faces.face[n] >> 1;
+      first_kept = std::min(first_kept, cell);
+      last_kept = std::max(last_kept, cell + 1);
+    }
+    south->makeWhole(first_kept, last_kept + 1, south_color);
+    north->makeWhole(first_kept, last_kept + 1, north_color);
     for (std::size_t n = 0; n < faces.count; ++n) {
       const std::uint32_t cell = faces.face[n] >> 1, range = faces.tiles[n];
-      first_kept = std::min<std::size_t>(first_kept, cell);
-      last_kept = std::max<std::size_t>(last_kept, cell + 1);
       const bool top = (faces.face[n] & 1) != 0;
       if (range == kExceptional) {
         const std::size_t south_west = first_of(row) + cell, north_west = south_west + columns;
@@ -214,9 +225,9 @@ void MeshRenderer::Worker::drawGrid(const ViewTransform& view, const MeshProject
       RasterTriangle& triangle = isOneTile(range) ? writer.add(static_cast<std::int32_t>(range & 0xFF),
                                                                static_cast<std::int32_t>(range >> 8 & 0xFF))
                                                   : several;
-      triangle.vertex[0] = southern(cell);
-      triangle.vertex[1] = northern(top ? cell : cell + 1);
-      triangle.vertex[2] = top ? northern(cell + 1) : southern(cell + 1);
+      triangle.vertex[0] = south->vertex[cell];
+      triangle.vertex[1] = north->vertex[top ? cell : cell + 1];
+      triangle.vertex[2] = (top ? north : south)->vertex[cell + 1];
       triangle.node = 0;
       triangle.face = faces.face[n];
       if (!isOneTile(range)) writer.add(triangle, unpacked(range));
@@ -354,9 +365,12 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   tbb::parallel_for(std::size_t{0}, bins_.tileCount(), [&](std::size_t t) {
     Worker& worker = *workers_[own()];
     bins_.segmentsOf(t, worker.segments);
-    worker.triangles.clear();
+    std::size_t count = 0;
+    for (const TileBins::Segment& segment : worker.segments) count += segment.count;
+    worker.triangles.resize(count);
+    const RasterTriangle** next = worker.triangles.data();
     for (const TileBins::Segment& segment : worker.segments) {
-      for (std::uint32_t n = 0; n < segment.count; ++n) worker.triangles.push_back(segment.first + n);
+      for (std::uint32_t n = 0; n < segment.count; ++n) *next++ = segment.first + n;
     }
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
     const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};

@@ -94,7 +94,8 @@ class TriangleSetUp {
       dropped.hidden |= laneBits(hn::RebindMask(u, hn::And(asked, behind))) << t;
 
       const Compaction kept(hn::AndNot(hn::Or(beside, behind), asked));
-      const auto append = [&](auto d, auto values, auto* to) { kept.store(d, values, to + placed.count); };
+      const std::size_t end = placed.count;
+      const auto append = [&](auto d, auto values, auto* to) { kept.store(d, values, to + end); };
       for (std::size_t k = 0; k < 3; ++k) {
         append(f, x[k], placed.x[k]);
         append(f, y[k], placed.y[k]);
@@ -111,7 +112,7 @@ class TriangleSetUp {
                                  hn::Or(hn::ShiftLeft<16>(last_j), hn::ShiftLeft<24>(last_i)));
       append(u, hn::BitCast(u, blocks), placed.blocks);
       append(u, hn::Iota(u, static_cast<std::uint32_t>(first + t)), placed.number);
-      placed.count += kept.count();
+      placed.count = end + kept.count();
     }
     return dropped;
   }
