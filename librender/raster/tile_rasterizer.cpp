@@ -174,16 +174,15 @@ class TileRasterizer {
       const auto columns = static_cast<std::int32_t>(blocks >> 16 & 0xFF) - first_j + 1,
                  rows = static_cast<std::int32_t>(blocks >> 24) - first_i + 1;
       setSteps(batch, t, steps[t]);
-      // Most triangles touch no other patch than their first.
-      bool behind =
-          listPatch(batch, t, steps[t], first_i * kBlocksAcross + first_j,
-                    {batch.at_first_block[0][t], batch.at_first_block[1][t], batch.at_first_block[2][t]},
-                    batch.at_first[t], columns, rows, list);
+      const std::int32_t first_block = first_i * kBlocksAcross + first_j;
+      bool behind = false;
       if (columns > kPatchSide || rows > kPatchSide) {
-        behind |= listOtherPatches<kCut>(batch, t, steps, first_i * kBlocksAcross + first_j, columns, rows,
-                                         list, progress);
-      } else if (list.count >= BlockList::kLong) {
-        drawList<kCut>(batch, steps, list, progress);
+        behind = listPatches<kCut>(batch, t, steps, first_block, columns, rows, list, progress);
+      } else {
+        Patch patch;
+        setPatch(batch, t, steps[t], patch);
+        behind = listPatch(batch, t, patch, first_block, batch.at_first[t], columns, rows, list);
+        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
       }
       hidden |= (behind ? 1U : 0U) << t;
     }
@@ -254,65 +253,87 @@ class TileRasterizer {
     }
   }
 
+  // Of the sixteen blocks of a patch, block by block.
+  struct Patch {
+    Ints edge[3][kVectors];  // at the blocks' first pixels
+    Floats step[kVectors];   // of 1/U, from the patch's first pixel
+  };
+
+  HWY_INLINE void setPatch(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
+                           Patch& patch) const {
+    const bool moved = tile_.offsets != nullptr;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      // A step of a block is four of a pixel's centre.
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Ints of_pixel =
+            moved ? edgeSteps(batch, t, k, v * kLanes) : hn::Load(kInt, steps.edge[k] + v * kLanes);
+        patch.edge[k][v] = hn::Add(hn::Set(kInt, batch.at_first_block[k][t]), hn::ShiftLeft<2>(of_pixel));
+      }
+      const Floats of_pixel = moved ? planeSteps(batch, t, hn::Load(kFloat, kLaneX + v * kLanes),
+                                                 hn::Load(kFloat, kLaneY + v * kLanes))
+                                    : hn::Load(kFloat, steps.inverse_u + v * kLanes);
+      patch.step[v] = hn::Mul(hn::Set(kFloat, 4.0F), of_pixel);
+    }
+  }
+
+  // Of a triangle that touches several patches; edge functions go from each to the next by addition.
   template <bool kCut>
-  HWY_NOINLINE bool listOtherPatches(const SetUpTriangles& batch, std::size_t t, const PixelSteps* steps,
-                                     std::int32_t first_block, std::int32_t columns, std::int32_t rows,
-                                     BlockList& list, Progress& progress) {
+  HWY_NOINLINE bool listPatches(const SetUpTriangles& batch, std::size_t t, const PixelSteps* steps,
+                                std::int32_t first_block, std::int32_t columns, std::int32_t rows,
+                                BlockList& list, Progress& progress) {
+    Patch row;
+    setPatch(batch, t, steps[t], row);
+    const float per_x = batch.gradient_x[t], per_y = batch.gradient_y[t], first = batch.at_first[t];
     bool hidden = false;
     for (std::int32_t i = 0; i < rows; i += kPatchSide) {
+      Patch patch = row;
+      const float down = per_y * static_cast<float>(kBlockSide * i);
       for (std::int32_t j = 0; j < columns; j += kPatchSide) {
         if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
-        if (i == 0 && j == 0) continue;
-        const auto edge = [&](std::size_t k) {
-          return batch.at_first_block[k][t] + kBlockSide * (batch.per_j[k][t] * j + batch.per_i[k][t] * i);
-        };
-        const float inverse_u =
-            batch.at_first[t] + (batch.gradient_x[t] * static_cast<float>(kBlockSide * j) +
-                                 batch.gradient_y[t] * static_cast<float>(kBlockSide * i));
-        hidden |= listPatch(batch, t, steps[t], first_block + i * kBlocksAcross + j,
-                            {edge(0), edge(1), edge(2)}, inverse_u, columns - j, rows - i, list);
+        hidden |= listPatch(batch, t, patch, first_block + i * kBlocksAcross + j,
+                            first + (per_x * static_cast<float>(kBlockSide * j) + down), columns - j,
+                            rows - i, list);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_j[k][t]);
+          for (std::size_t v = 0; v < kVectors; ++v) patch.edge[k][v] = hn::Add(patch.edge[k][v], step);
+        }
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_i[k][t]);
+        for (std::size_t v = 0; v < kVectors; ++v) row.edge[k][v] = hn::Add(row.edge[k][v], step);
       }
     }
     return hidden;
   }
 
   // Appends those blocks of a patch that the triangle may show in. True if some were left out because it lies
-  // behind what they show. `edge` and `u`: at the patch's first pixel. `columns`, `rows`: of the triangle's
-  // box, from the patch's first block.
-  HWY_INLINE bool listPatch(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
-                            std::int32_t first_block, const std::array<std::int32_t, 3>& edge, float u,
-                            std::int32_t columns, std::int32_t rows, BlockList& list) const {
+  // behind what they show. `u`: 1/U at the patch's first pixel. `columns`, `rows`: of the triangle's box,
+  // from the patch's first block.
+  HWY_INLINE bool listPatch(const SetUpTriangles& batch, std::size_t t, const Patch& patch,
+                            std::int32_t first_block, float u, std::int32_t columns, std::int32_t rows,
+                            BlockList& list) const {
     const Ints first_of_patch = hn::Set(kInt, first_block);
     const Ints beyond_j = hn::Set(kInt, columns), beyond_i = hn::Set(kInt, rows);
-    const bool moved = tile_.offsets != nullptr;
     auto hidden = hn::FirstN(kInt, 0);
     std::size_t count = list.count;
-    for (std::size_t v = 0; v < kPatchBlocks; v += kLanes) {
+    for (std::size_t n = 0; n < kVectors; ++n) {
+      const std::size_t v = n * kLanes;
       auto touched =
           hn::And(hn::Lt(hn::Load(kInt, kLaneJ + v), beyond_j), hn::Lt(hn::Load(kInt, kLaneI + v), beyond_i));
-      // A step of a block is four of a pixel's centre.
-      Ints at_block[3];
-      Ints greatest = hn::Zero(kInt);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Ints of_pixel = moved ? edgeSteps(batch, t, k, v) : hn::Load(kInt, steps.edge[k] + v);
-        at_block[k] = hn::Add(hn::Set(kInt, edge[k]), hn::ShiftLeft<2>(of_pixel));
-        greatest = hn::Or(greatest, hn::Add(at_block[k], hn::Set(kInt, batch.rise[k][t])));
-      }
-      touched = hn::And(touched, hn::Gt(greatest, hn::Set(kInt, -1)));
+      const auto greatest = [&](std::size_t k) {
+        return hn::Add(patch.edge[k][n], hn::Set(kInt, batch.rise[k][t]));
+      };
+      touched =
+          hn::And(touched, hn::Gt(hn::Or(hn::Or(greatest(0), greatest(1)), greatest(2)), hn::Set(kInt, -1)));
       const Ints block = hn::Add(first_of_patch, hn::Load(kInt, kNeighbour + v));
       const float* const least = buffer_.least.data() + first_block;
       const Floats there = everyFourth(
-          kFloat, [&](std::size_t n) { return least + kNeighbour[v + n]; }, 0);
+          kFloat, [&](std::size_t lane) { return least + kNeighbour[v + lane]; }, 0);
       const auto nearer = hn::RebindMask(kInt, hn::Gt(hn::Set(kFloat, batch.greatest[t]), there));
       hidden = hn::Or(hidden, hn::AndNot(nearer, touched));
-      const auto kept = hn::And(touched, nearer);
-      const Compaction compaction(kept);
-      for (std::size_t k = 0; k < 3; ++k) compaction.store(kInt, at_block[k], list.edge[k] + count);
-      const Floats of_pixel =
-          moved ? planeSteps(batch, t, hn::Load(kFloat, kLaneX + v), hn::Load(kFloat, kLaneY + v))
-                : hn::Load(kFloat, steps.inverse_u + v);
-      const Floats inverse_u = hn::Add(hn::Set(kFloat, u), hn::Mul(hn::Set(kFloat, 4.0F), of_pixel));
-      compaction.store(kFloat, inverse_u, list.inverse_u + count);
+      const Compaction compaction(hn::And(touched, nearer));
+      for (std::size_t k = 0; k < 3; ++k) compaction.store(kInt, patch.edge[k][n], list.edge[k] + count);
+      compaction.store(kFloat, hn::Add(hn::Set(kFloat, u), patch.step[n]), list.inverse_u + count);
       hn::StoreU(hn::Set(kInt, static_cast<std::int32_t>(t)), kInt, list.triangle + count);
       compaction.store(kInt, block, list.block + count);
       count += compaction.count();
@@ -391,6 +412,19 @@ class TileRasterizer {
   const int columns_, rows_;  // of the tile that lie in the picture
 };
 
+// What a cleared buffer holds comes as arguments: of constants, compilers would make calls of memset and
+// microcode for filling, which take a frame of few triangles 1 to 2 % longer.
+void clear(float inverse_u, std::uint32_t owner, TileBuffer& buffer) {
+  const Floats depth = hn::Set(kFloat, inverse_u);
+  const auto owners = hn::Set(kUnsigned, owner);
+  for (std::size_t n = 0; n < buffer.inverse_u.size(); n += kLanes) {
+    hn::Store(depth, kFloat, buffer.inverse_u.data() + n);
+    hn::Store(owners, kUnsigned, buffer.triangle.data() + n);
+  }
+  for (std::size_t n = 0; n < buffer.least.size(); n += kLanes)
+    hn::Store(depth, kFloat, buffer.least.data() + n);
+}
+
 void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts) {
   TileRasterizer(tile, buffer, counts).run(triangles, first, crossing);
@@ -405,12 +439,11 @@ HWY_AFTER_NAMESPACE();
 namespace deltaz {
 namespace {
 HWY_EXPORT(rasterize);
-}
+HWY_EXPORT(clear);
+}  // namespace
 
 void TileBuffer::clear() {
-  inverse_u.fill(0);
-  triangle.fill(kNoTriangle);
-  least.fill(0);
+  HWY_DYNAMIC_DISPATCH(clear)(0, kNoTriangle, *this);
   wrote.clear();
 }
 
