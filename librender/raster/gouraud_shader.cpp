@@ -227,6 +227,14 @@ HWY_INLINE std::uint32_t notOwnedBy(std::uint32_t known, const std::uint32_t* ow
   return others;
 }
 
+// The triangle of a block's first pixel, and a bit for each pixel that is not its.
+struct Owners {
+  std::uint32_t first, others;
+};
+HWY_INLINE Owners ownersOf(const std::uint32_t* block) {
+  return {.first = block[0], .others = notOwnedBy(block[0], block)};
+}
+
 // One row of pixels out of a row of blocks.
 template <typename T>
 HWY_INLINE void copyRow(const T* blocks, int columns, T* out) {
@@ -281,7 +289,13 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
     const auto first_of_row = static_cast<std::size_t>(block_i) * kBlocksAcross * kBlockPixels;
     const float* const depth = buffer.inverse_u.data() + first_of_row;
     const std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
+    // Which of the three ways a block takes is hard to guess: it is found out two blocks ahead, so that
+    // a processor that guessed wrong knows before much was done in vain.
+    Owners next = ownersOf(owner), after_next = ownersOf(owner + kBlockPixels);
     for (std::size_t block = 0; block < kBlocksAcross; ++block) {
+      const Owners owners = next;
+      next = after_next;
+      after_next = ownersOf(owner + std::min<std::size_t>(block + 2, kBlocksAcross - 1) * kBlockPixels);
       const Floats block_x = hn::Set(kFloat, kBlockX[block]);
       const auto colorBlock = [&](auto colors) {
         for (std::size_t v = 0; v < kBlockPixels; v += kLanes) {
@@ -292,19 +306,19 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
           hn::Store(hn::BitCast(kUnsigned, colors(pixels)), kUnsigned, color + n);
         }
       };
-      const std::uint32_t* const of_block = owner + block * kBlockPixels;
-      const std::uint32_t first = of_block[0], not_first = notOwnedBy(first, of_block);
-      if (not_first == 0) {
-        if (first == kNoTriangle) {
+      if (owners.others == 0) {
+        if (owners.first == kNoTriangle) {
           colorBlock([&](const Pixels&) { return background; });
         } else {
-          colorBlock([&](const Pixels& pixels) { return shadeOne(planes[first], pixels); });
+          colorBlock([&](const Pixels& pixels) { return shadeOne(planes[owners.first], pixels); });
         }
         continue;
       }
-      const std::uint32_t second = of_block[std::countr_zero(not_first)];
-      if ((not_first & notOwnedBy(second, of_block)) == 0) {
-        colorBlock([&](const Pixels& pixels) { return shadeTwo(planes, first, second, pixels, background); });
+      const std::uint32_t* const of_block = owner + block * kBlockPixels;
+      const std::uint32_t second = of_block[std::countr_zero(owners.others)];
+      if ((owners.others & notOwnedBy(second, of_block)) == 0) {
+        colorBlock(
+            [&](const Pixels& pixels) { return shadeTwo(planes, owners.first, second, pixels, background); });
       } else {
         colorBlock([&](const Pixels& pixels) { return shadeMore(planes, pixels, background); });
       }

@@ -34,8 +34,9 @@ struct alignas(64) PixelSteps {
 // Blocks that are to be drawn, in order: of several triangles, so that no loop ends at a triangle's end,
 // which processors guess badly for small ones.
 struct alignas(64) BlockList {
-  // Drawn when it has so many: what they show is known to the triangles after them.
-  static constexpr std::size_t kLong = 128;
+  // Drawn when it has so many: what they show is known to the triangles after them. Of B's at 1920 x 1080,
+  // 512 is 4 % faster than 128: least depths are loaded again later after they were stored one by one.
+  static constexpr std::size_t kLong = 512;
   static constexpr std::size_t kRoom = kLong + 2 * kPatchBlocks;
   std::int32_t edge[3][kRoom];  // at the block's first pixel
   float inverse_u[kRoom];
