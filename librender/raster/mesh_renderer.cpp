@@ -1,6 +1,7 @@
 #include "librender/raster/mesh_renderer.h"
 
 #include <algorithm>
+#include <hwy/cache_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unordered_map>
@@ -370,7 +371,11 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     worker.triangles.resize(count);
     const RasterTriangle** next = worker.triangles.data();
     for (const TileBins::Segment& segment : worker.segments) {
-      for (std::uint32_t n = 0; n < segment.count; ++n) *next++ = segment.first + n;
+      for (std::uint32_t n = 0; n < segment.count; ++n) {
+        // On its way while the buffers are cleared.
+        hwy::Prefetch(segment.first + n);
+        *next++ = segment.first + n;
+      }
     }
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
     const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};
