@@ -256,7 +256,20 @@ HWY_INLINE void streamRow(const T* blocks, T* out) {
   }
 }
 
-void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, const TileBuffer& buffer,
+// As TileBuffer::clear(), of a row of blocks.
+HWY_INLINE void clearRow(int block_i, TileBuffer& buffer) {
+  const std::size_t first_block = static_cast<std::size_t>(block_i) * kBlocksAcross;
+  const auto zero = hn::Zero(kFloat);
+  const auto nothing = hn::Set(kUnsigned, kNoTriangle);
+  for (std::size_t n = 0; n < kBlocksAcross * kBlockPixels; n += kLanes) {
+    hn::Store(zero, kFloat, buffer.inverse_u.data() + first_block * kBlockPixels + n);
+    hn::Store(nothing, kUnsigned, buffer.triangle.data() + first_block * kBlockPixels + n);
+  }
+  for (std::size_t n = 0; n < kBlocksAcross; n += kLanes)
+    hn::Store(zero, kFloat, buffer.least.data() + first_block + n);
+}
+
+void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangles, TileBuffer& buffer,
                GouraudScratch& scratch, ColorFrame& frame) {
   const float origin_x = static_cast<float>(tile.j * kTileSide) - static_cast<float>(tile.width - 1) * 0.5F;
   const float origin_y = static_cast<float>(tile.i * kTileSide) - static_cast<float>(tile.height - 1) * 0.5F;
@@ -287,8 +300,8 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
   for (int block_i = 0; block_i * kBlockSide < rows; ++block_i) {
     const Floats block_y = hn::Set(kFloat, static_cast<float>(block_i * kBlockSide));
     const auto first_of_row = static_cast<std::size_t>(block_i) * kBlocksAcross * kBlockPixels;
-    const float* const depth = buffer.inverse_u.data() + first_of_row;
-    const std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
+    float* const depth = buffer.inverse_u.data() + first_of_row;
+    std::uint32_t* const owner = buffer.triangle.data() + first_of_row;
     // Which of the three ways a block takes is hard to guess: it is found out two blocks ahead, so that
     // a processor that guessed wrong knows before much was done in vain.
     Owners next = ownersOf(owner), after_next = ownersOf(owner + kBlockPixels);
@@ -336,8 +349,9 @@ void shadeTile(const Tile& tile, std::span<const RasterTriangle* const> triangle
         copyRow(depth + i * kBlockSide, columns, &frame.inverse_u[pixel]);
       }
     }
+    clearRow(block_i, buffer);
   }
-  if (lines) hwy::FlushStream();
+  buffer.wrote.clear();
 }
 
 }  // namespace
@@ -358,8 +372,8 @@ void ColorFrame::resize(int new_width, int new_height) {
   inverse_u.resize(rgba.size());
 }
 
-void shadeTileGouraud(const Tile& tile, std::span<const RasterTriangle* const> triangles,
-                      const TileBuffer& buffer, GouraudScratch& scratch, ColorFrame& frame) {
+void shadeTileGouraud(const Tile& tile, std::span<const RasterTriangle* const> triangles, TileBuffer& buffer,
+                      GouraudScratch& scratch, ColorFrame& frame) {
   HWY_DYNAMIC_DISPATCH(shadeTile)(tile, triangles, buffer, scratch, frame);
 }
 

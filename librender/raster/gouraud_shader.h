@@ -39,7 +39,9 @@ struct GouraudScratch {
   std::vector<ShadingPlanes> planes;  // of the tile's triangles
 };
 
-void shadeTileGouraud(const Tile& tile, std::span<const RasterTriangle* const> triangles,
-                      const TileBuffer& buffer, GouraudScratch& scratch, ColorFrame& frame);
+// Leaves `buffer` clear, for the next tile: that costs next to nothing here. Pixels may be stored past the
+// caches: hwy::FlushStream() comes before another thread reads them.
+void shadeTileGouraud(const Tile& tile, std::span<const RasterTriangle* const> triangles, TileBuffer& buffer,
+                      GouraudScratch& scratch, ColorFrame& frame);
 
 }  // namespace deltaz

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <hwy/cache_control.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unordered_map>
@@ -344,6 +345,8 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   for (const std::unique_ptr<Worker>& worker : workers_) {
     worker->counts = {};
     worker->tile_counts = {};
+    // From here on shading leaves it clear; a frame that memory ran out for did not.
+    worker->buffer.clear();
   }
   const auto own = [] { return static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()); };
 
@@ -363,7 +366,7 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
   bins_.finish();
 
   crossing_.reset(threads, 1 + bins_.crossingCount());
-  tbb::parallel_for(std::size_t{0}, bins_.tileCount(), [&](std::size_t t) {
+  const auto draw_tile = [&](std::size_t t) {
     Worker& worker = *workers_[own()];
     bins_.segmentsOf(t, worker.segments);
     std::size_t count = 0;
@@ -372,16 +375,21 @@ MeshCounts MeshRenderer::draw(const ViewTransform& view, std::span<const GridMes
     const RasterTriangle** next = worker.triangles.data();
     for (const TileBins::Segment& segment : worker.segments) {
       for (std::uint32_t n = 0; n < segment.count; ++n) {
-        // On its way while the buffers are cleared.
+        // On its way while the others are listed.
         hwy::Prefetch(segment.first + n);
         *next++ = segment.first + n;
       }
     }
     const auto across = static_cast<std::size_t>(bins_.tilesAcross());
     const Tile tile{static_cast<int>(t % across), static_cast<int>(t / across), view.width, view.height};
-    worker.buffer.clear();
     rasterizeTile(tile, worker.triangles, 0, crossing_.notesOf(own()), worker.buffer, worker.tile_counts);
     shadeTileGouraud(tile, worker.triangles, worker.buffer, worker.scratch, frame);
+  };
+  const tbb::blocked_range<std::size_t> all_tiles(0, bins_.tileCount());
+  tbb::parallel_for(all_tiles, [&](const tbb::blocked_range<std::size_t>& tiles) {
+    for (std::size_t t = tiles.begin(); t < tiles.end(); ++t) draw_tile(t);
+    // Pixels that passed the caches are there before another thread goes on.
+    hwy::FlushStream();
   });
 
   MeshCounts counts;

@@ -78,13 +78,14 @@ TEST(gouraud_shader, every_pixel_has_its_triangles_colour_in_perspective) {
         frame.background = kBehindAll;
         frame.resize(width, height);
         GouraudScratch scratch;
+        const auto settled = std::make_unique<TileBuffer>(*buffer);
         shadeTileGouraud(tile, pointers, *buffer, scratch, frame);
         std::size_t compared = 0;
         for (int i = 0; i < height; ++i) {
           for (int j = 0; j < width; ++j) {
             const auto pixel = static_cast<std::size_t>(i * width + j);
-            const std::uint32_t owner = buffer->triangle[tileIndex(j, i)];
-            EXPECT_EQ(frame.inverse_u[pixel], buffer->inverse_u[tileIndex(j, i)]);
+            const std::uint32_t owner = settled->triangle[tileIndex(j, i)];
+            EXPECT_EQ(frame.inverse_u[pixel], settled->inverse_u[tileIndex(j, i)]);
             if (owner == kNoTriangle) {
               ASSERT_EQ(frame.rgba[pixel], kBehindAll) << j << ' ' << i;
               continue;
@@ -108,6 +109,12 @@ TEST(gouraud_shader, every_pixel_has_its_triangles_colour_in_perspective) {
           }
         }
         EXPECT_GT(compared, 300U);
+        const auto cleared = std::make_unique<TileBuffer>();
+        cleared->clear();
+        EXPECT_EQ(buffer->inverse_u, cleared->inverse_u);
+        EXPECT_EQ(buffer->triangle, cleared->triangle);
+        EXPECT_EQ(buffer->least, cleared->least);
+        EXPECT_EQ(buffer->wrote, cleared->wrote);
       });
     }
   }
