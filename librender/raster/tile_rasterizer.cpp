@@ -413,19 +413,6 @@ class TileRasterizer {
   const int columns_, rows_;  // of the tile that lie in the picture
 };
 
-// What a cleared buffer holds comes as arguments: of constants, compilers would make calls of memset and
-// microcode for filling, which take a frame of few triangles 1 to 2 % longer.
-void clear(float inverse_u, std::uint32_t owner, TileBuffer& buffer) {
-  const Floats depth = hn::Set(kFloat, inverse_u);
-  const auto owners = hn::Set(kUnsigned, owner);
-  for (std::size_t n = 0; n < buffer.inverse_u.size(); n += kLanes) {
-    hn::Store(depth, kFloat, buffer.inverse_u.data() + n);
-    hn::Store(owners, kUnsigned, buffer.triangle.data() + n);
-  }
-  for (std::size_t n = 0; n < buffer.least.size(); n += kLanes)
-    hn::Store(depth, kFloat, buffer.least.data() + n);
-}
-
 void rasterize(const Tile& tile, std::span<const RasterTriangle* const> triangles, std::size_t first,
                std::span<std::uint8_t> crossing, TileBuffer& buffer, TileCounts& counts) {
   TileRasterizer(tile, buffer, counts).run(triangles, first, crossing);
@@ -440,11 +427,12 @@ HWY_AFTER_NAMESPACE();
 namespace deltaz {
 namespace {
 HWY_EXPORT(rasterize);
-HWY_EXPORT(clear);
-}  // namespace
+}
 
 void TileBuffer::clear() {
-  HWY_DYNAMIC_DISPATCH(clear)(0, kNoTriangle, *this);
+  inverse_u.fill(0);
+  triangle.fill(kNoTriangle);
+  least.fill(0);
   wrote.clear();
 }
 
