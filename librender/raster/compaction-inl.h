@@ -8,6 +8,8 @@
 #define DELTAZ_COMPACTION_INL_H
 #endif
 
+#include <cstddef>
+#include <cstdint>
 #include <hwy/highway.h>
 
 #include "librender/raster/compaction_places.h"
@@ -54,6 +56,22 @@ class Compaction {
   IntMask chosen_;
   hwy::HWY_NAMESPACE::Vec<IntTag> places_{};
 };
+
+// Of one vector alone. Stores a whole vector at `to`; returns how many were chosen.
+HWY_INLINE std::size_t storeCompacted(
+    hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::CappedTag<std::int32_t, 16>> chosen,
+    hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::CappedTag<std::int32_t, 16>> values, std::int32_t* to) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  constexpr hn::CappedTag<std::int32_t, 16> d;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    hn::StoreU(hn::Compress(values, chosen), d, to);
+    return hn::CountTrue(d, chosen);
+  } else {
+    const Compaction compaction(chosen);
+    compaction.store(d, values, to);
+    return compaction.count();
+  }
+}
 
 }  // namespace deltaz::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -3,6 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "librender/raster/tile_rasterizer.cpp"
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <hwy/cache_control.h>
@@ -25,10 +26,12 @@ inline constexpr std::int32_t kPatchSide = 4;
 inline constexpr std::size_t kPatchBlocks = kPatchSide * kPatchSide;
 static_assert(kPatchBlocks == kBlockPixels);
 
-// What the pixels of a triangle's blocks share: edge functions and 1/U from a block's first pixel.
+// What the blocks of a triangle share: edge functions and 1/U from a block's first pixel, and with one load
+// for all three the least and the greatest 1/U and the bits of the triangle's number in the tile.
 struct alignas(64) PixelSteps {
   std::int32_t edge[3][kBlockPixels];
   float inverse_u[kBlockPixels];
+  float shared[4];
 };
 
 // Blocks that are to be drawn, in order: of several triangles, so that no loop ends at a triangle's end,
@@ -38,11 +41,23 @@ struct alignas(64) BlockList {
   // 512 is 4 % faster than 128: least depths are loaded again later after they were stored one by one.
   static constexpr std::size_t kLong = 512;
   static constexpr std::size_t kRoom = kLong + 2 * kPatchBlocks;
-  std::int32_t edge[3][kRoom];  // at the block's first pixel
-  float inverse_u[kRoom];
-  std::int32_t block[kRoom], triangle[kRoom];  // the latter in the batch
+  // From the lowest bit: 8 of the block in the tile, 4 of its column and 4 of its row from the triangle's
+  // first block, then the triangle in the batch.
+  std::int32_t entry[kRoom];
   std::size_t count;
+  // At the blocks' first pixels: found for all entries at once, not moved to the front patch by patch.
+  std::int32_t edge[3][kRoom];
+  float inverse_u[kRoom];
 };
+static_assert(kSetUpBatch == 16 && kBlocksAcross == 16);
+
+// Of a patch's blocks, from the entry of its first.
+alignas(64) inline constexpr auto kNeighbourEntry = [] {
+  std::array<std::int32_t, kPatchBlocks> entry{};
+  for (std::size_t n = 0; n < kPatchBlocks; ++n)
+    entry[n] = kNeighbour[n] + (kLaneJ[n] << 8) + (kLaneI[n] << 12);
+  return entry;
+}();
 
 }  // namespace deltaz
 #endif
@@ -72,6 +87,36 @@ HWY_INLINE float leastLane(D d, hn::Vec<D> values) {
   } else {
     const hn::Half<D> half;
     return leastLane(half, hn::Min(LowerHalf(half, values), UpperHalf(half, values)));
+  }
+}
+
+// Four floats that are read together; one of them for all lanes.
+class FourFloats {
+ public:
+  explicit HWY_INLINE FourFloats(const float* four) : four_(four) {
+    if constexpr (kLanes > 1) loaded_ = hn::LoadDup128(kFloat, four);
+  }
+  template <int kWhich>
+  HWY_INLINE Floats get() const {
+    if constexpr (kLanes == 1) {
+      return hn::Set(kFloat, four_[kWhich]);
+    } else {
+      return hn::Broadcast<kWhich>(loaded_);
+    }
+  }
+
+ private:
+  const float* four_;
+  Floats loaded_{};
+};
+
+// Of a table of sixteen.
+template <class D>
+HWY_INLINE hn::Vec<D> lookUp(D d, const hn::TFromD<D>* table, Ints index) {
+  if constexpr (hn::MaxLanes(D()) == 16) {
+    return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, index));
+  } else {
+    return hn::GatherIndex(d, table, index);
   }
 }
 
@@ -182,7 +227,7 @@ class TileRasterizer {
       } else {
         Patch patch;
         setPatch(batch, t, steps[t], patch);
-        behind = listPatch(batch, t, patch, first_block, batch.at_first[t], columns, rows, list);
+        behind = listPatch(batch, t, patch, first_block, 0, 0, columns, rows, list);
         if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
       }
       hidden |= (behind ? 1U : 0U) << t;
@@ -252,12 +297,15 @@ class TileRasterizer {
       for (std::size_t k = 0; k < 3; ++k) hn::Store(edges[k], kInt, steps.edge[k] + v);
       hn::Store(planeSteps(batch, t, x, y), kFloat, steps.inverse_u + v);
     }
+    steps.shared[0] = batch.least[t];
+    steps.shared[1] = batch.greatest[t];
+    steps.shared[2] = std::bit_cast<float>(batch.number[t]);
+    steps.shared[3] = 0;
   }
 
   // Of the sixteen blocks of a patch, block by block.
   struct Patch {
-    Ints edge[3][kVectors];  // at the blocks' first pixels
-    Floats step[kVectors];   // of 1/U, from the patch's first pixel
+    Ints greatest[3][kVectors];  // of the edge functions in the block
   };
 
   HWY_INLINE void setPatch(const SetUpTriangles& batch, std::size_t t, const PixelSteps& steps,
@@ -268,12 +316,9 @@ class TileRasterizer {
       for (std::size_t k = 0; k < 3; ++k) {
         const Ints of_pixel =
             moved ? edgeSteps(batch, t, k, v * kLanes) : hn::Load(kInt, steps.edge[k] + v * kLanes);
-        patch.edge[k][v] = hn::Add(hn::Set(kInt, batch.at_first_block[k][t]), hn::ShiftLeft<2>(of_pixel));
+        patch.greatest[k][v] =
+            hn::Add(hn::Set(kInt, batch.greatest_in_first_block[k][t]), hn::ShiftLeft<2>(of_pixel));
       }
-      const Floats of_pixel = moved ? planeSteps(batch, t, hn::Load(kFloat, kLaneX + v * kLanes),
-                                                 hn::Load(kFloat, kLaneY + v * kLanes))
-                                    : hn::Load(kFloat, steps.inverse_u + v * kLanes);
-      patch.step[v] = hn::Mul(hn::Set(kFloat, 4.0F), of_pixel);
     }
   }
 
@@ -284,63 +329,77 @@ class TileRasterizer {
                                 BlockList& list, Progress& progress) {
     Patch row;
     setPatch(batch, t, steps[t], row);
-    const float per_x = batch.gradient_x[t], per_y = batch.gradient_y[t], first = batch.at_first[t];
     bool hidden = false;
     for (std::int32_t i = 0; i < rows; i += kPatchSide) {
       Patch patch = row;
-      const float down = per_y * static_cast<float>(kBlockSide * i);
       for (std::int32_t j = 0; j < columns; j += kPatchSide) {
         if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
-        hidden |= listPatch(batch, t, patch, first_block + i * kBlocksAcross + j,
-                            first + (per_x * static_cast<float>(kBlockSide * j) + down), columns - j,
-                            rows - i, list);
+        hidden |= listPatch(batch, t, patch, first_block, j, i, columns, rows, list);
         for (std::size_t k = 0; k < 3; ++k) {
           const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_j[k][t]);
-          for (std::size_t v = 0; v < kVectors; ++v) patch.edge[k][v] = hn::Add(patch.edge[k][v], step);
+          for (std::size_t v = 0; v < kVectors; ++v)
+            patch.greatest[k][v] = hn::Add(patch.greatest[k][v], step);
         }
       }
       for (std::size_t k = 0; k < 3; ++k) {
         const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_i[k][t]);
-        for (std::size_t v = 0; v < kVectors; ++v) row.edge[k][v] = hn::Add(row.edge[k][v], step);
+        for (std::size_t v = 0; v < kVectors; ++v) row.greatest[k][v] = hn::Add(row.greatest[k][v], step);
       }
     }
     return hidden;
   }
 
   // Appends those blocks of a patch that the triangle may show in. True if some were left out because it lies
-  // behind what they show. `u`: 1/U at the patch's first pixel. `columns`, `rows`: of the triangle's box,
-  // from the patch's first block.
+  // behind what they show. The triangle's box begins at `first_block` and has `columns` and `rows`; the patch
+  // begins `j` and `i` blocks from there.
   HWY_INLINE bool listPatch(const SetUpTriangles& batch, std::size_t t, const Patch& patch,
-                            std::int32_t first_block, float u, std::int32_t columns, std::int32_t rows,
-                            BlockList& list) const {
-    const Ints first_of_patch = hn::Set(kInt, first_block);
-    const Ints beyond_j = hn::Set(kInt, columns), beyond_i = hn::Set(kInt, rows);
+                            std::int32_t first_block, std::int32_t j, std::int32_t i, std::int32_t columns,
+                            std::int32_t rows, BlockList& list) const {
+    const std::int32_t first_of_patch = first_block + i * kBlocksAcross + j;
+    const Ints first_entry =
+        hn::Set(kInt, first_of_patch + (j << 8) + (i << 12) + (static_cast<std::int32_t>(t) << 16));
+    const Ints beyond_j = hn::Set(kInt, columns - j), beyond_i = hn::Set(kInt, rows - i);
+    const float* const least = buffer_.least.data() + first_of_patch;
     auto hidden = hn::FirstN(kInt, 0);
     std::size_t count = list.count;
     for (std::size_t n = 0; n < kVectors; ++n) {
       const std::size_t v = n * kLanes;
       auto touched =
           hn::And(hn::Lt(hn::Load(kInt, kLaneJ + v), beyond_j), hn::Lt(hn::Load(kInt, kLaneI + v), beyond_i));
-      const auto greatest = [&](std::size_t k) {
-        return hn::Add(patch.edge[k][n], hn::Set(kInt, batch.rise[k][t]));
-      };
-      touched =
-          hn::And(touched, hn::Gt(hn::Or(hn::Or(greatest(0), greatest(1)), greatest(2)), hn::Set(kInt, -1)));
-      const Ints block = hn::Add(first_of_patch, hn::Load(kInt, kNeighbour + v));
-      const float* const least = buffer_.least.data() + first_block;
+      const Ints signs = hn::Or(hn::Or(patch.greatest[0][n], patch.greatest[1][n]), patch.greatest[2][n]);
+      touched = hn::And(touched, hn::Gt(signs, hn::Set(kInt, -1)));
       const Floats there = everyFourth(
           kFloat, [&](std::size_t lane) { return least + kNeighbour[v + lane]; }, 0);
       const auto nearer = hn::RebindMask(kInt, hn::Gt(hn::Set(kFloat, batch.greatest[t]), there));
       hidden = hn::Or(hidden, hn::AndNot(nearer, touched));
-      const Compaction compaction(hn::And(touched, nearer));
-      for (std::size_t k = 0; k < 3; ++k) compaction.store(kInt, patch.edge[k][n], list.edge[k] + count);
-      compaction.store(kFloat, hn::Add(hn::Set(kFloat, u), patch.step[n]), list.inverse_u + count);
-      hn::StoreU(hn::Set(kInt, static_cast<std::int32_t>(t)), kInt, list.triangle + count);
-      compaction.store(kInt, block, list.block + count);
-      count += compaction.count();
+      count += storeCompacted(hn::And(touched, nearer),
+                              hn::Add(first_entry, hn::Load(kInt, kNeighbourEntry.data() + v)),
+                              list.entry + count);
     }
     list.count = count;
     return !hn::AllFalse(kInt, hidden);
+  }
+
+  // Where the listed blocks begin.
+  static HWY_INLINE void locate(const SetUpTriangles& batch, BlockList& list) {
+    // The last vector reaches beyond the list.
+    for (std::size_t v = 0; v < kBlockPixels; v += kLanes)
+      hn::StoreU(hn::Zero(kInt), kInt, list.entry + list.count + v);
+    for (std::size_t n = 0; n < list.count; n += kLanes) {
+      const Ints entry = hn::Load(kInt, list.entry + n);
+      const Ints t = hn::ShiftRight<16>(entry);
+      // Four pixels a block.
+      const Ints j = hn::And(hn::ShiftRight<6>(entry), hn::Set(kInt, 15 * kBlockSide)),
+                 i = hn::And(hn::ShiftRight<10>(entry), hn::Set(kInt, 15 * kBlockSide));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Ints steps =
+            hn::Add(hn::Mul(lookUp(kInt, batch.per_j[k], t), j), hn::Mul(lookUp(kInt, batch.per_i[k], t), i));
+        hn::Store(hn::Add(lookUp(kInt, batch.at_first_block[k], t), steps), kInt, list.edge[k] + n);
+      }
+      const Floats steps = hn::Add(hn::Mul(lookUp(kFloat, batch.gradient_x, t), hn::ConvertTo(kFloat, j)),
+                                   hn::Mul(lookUp(kFloat, batch.gradient_y, t), hn::ConvertTo(kFloat, i)));
+      hn::Store(hn::Add(lookUp(kFloat, batch.at_first, t), steps), kFloat, list.inverse_u + n);
+    }
   }
 
   template <bool kCut>
@@ -348,12 +407,13 @@ class TileRasterizer {
                            Progress& progress) const {
     // In registers, which members would not be.
     const Buffers buffers{buffer_.inverse_u.data(), buffer_.triangle.data(), buffer_.least.data()};
+    locate(batch, list);
     Drawn all = progress.all;
     for (std::size_t n = 0; n < list.count; ++n) {
-      const auto t = static_cast<std::size_t>(list.triangle[n]),
-                 block = static_cast<std::size_t>(list.block[n]);
+      const auto t = static_cast<std::size_t>(list.entry[n] >> 16),
+                 block = static_cast<std::size_t>(list.entry[n] & 0xFF);
       const std::int32_t edge[3] = {list.edge[0][n], list.edge[1][n], list.edge[2][n]};
-      const Drawn drawn = drawBlock<kCut>(buffers, batch, t, steps[t], edge, list.inverse_u[n], block);
+      const Drawn drawn = drawBlock<kCut>(buffers, steps[t], edge, list.inverse_u[n], block);
       all.tested += drawn.tested;
       all.written += drawn.written;
       progress.tested[t] = static_cast<std::uint32_t>(all.tested);
@@ -365,14 +425,14 @@ class TileRasterizer {
 
   // `edge` and `u`: at the block's first pixel.
   template <bool kCut>
-  HWY_INLINE Drawn drawBlock(const Buffers& buffers, const SetUpTriangles& batch, std::size_t t,
-                             const PixelSteps& steps, const std::int32_t (&edge)[3], float u,
-                             std::size_t block) const {
+  HWY_INLINE Drawn drawBlock(const Buffers& buffers, const PixelSteps& steps, const std::int32_t (&edge)[3],
+                             float u, std::size_t block) const {
     float* const depth = buffers.inverse_u + block * kBlockPixels;
     std::uint32_t* const owner = buffers.owner + block * kBlockPixels;
-    const Floats first = hn::Set(kFloat, u), least = hn::Set(kFloat, batch.least[t]),
-                 greatest = hn::Set(kFloat, batch.greatest[t]);
-    const std::uint32_t number = batch.number[t];
+    const Floats first = hn::Set(kFloat, u);
+    const FourFloats shared(steps.shared);
+    const Floats least = shared.get<0>(), greatest = shared.get<1>();
+    const auto number = hn::BitCast(kUnsigned, shared.get<2>());
     Drawn drawn;
     Floats furthest = hn::Zero(kFloat);
     for (std::size_t v = 0; v < kVectors; ++v) {
@@ -396,8 +456,8 @@ class TileRasterizer {
       const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass), value, old);
       hn::Store(now, kFloat, depth + v * kLanes);
       furthest = v == 0 ? now : hn::Min(furthest, now);
-      const auto owners = hn::IfThenElse(hn::RebindMask(kUnsigned, pass), hn::Set(kUnsigned, number),
-                                         hn::Load(kUnsigned, owner + v * kLanes));
+      const auto owners =
+          hn::IfThenElse(hn::RebindMask(kUnsigned, pass), number, hn::Load(kUnsigned, owner + v * kLanes));
       hn::Store(owners, kUnsigned, owner + v * kLanes);
       drawn.tested += hn::CountTrue(kInt, covered);
       drawn.written += hn::CountTrue(kInt, pass);

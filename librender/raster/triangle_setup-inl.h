@@ -197,8 +197,8 @@ class TriangleSetUp {
                    per_i = hn::Sub(at(placed.snapped_x[next]), at(placed.snapped_x[k]));
         hn::Store(per_j, s, out.per_j[k] + t);
         hn::Store(per_i, s, out.per_i[k] + t);
-        hn::Store(hn::Add(at(at_origin[k]), hn::Add(hn::Mul(per_j, column), hn::Mul(per_i, row))), s,
-                  out.at_first_block[k] + t);
+        const Ints at_first = hn::Add(at(at_origin[k]), hn::Add(hn::Mul(per_j, column), hn::Mul(per_i, row)));
+        hn::Store(at_first, s, out.at_first_block[k] + t);
         static_assert(kBlockSide == 4);
         const Ints of_pixel = hn::Add(hn::Max(per_j, hn::Zero(s)), hn::Max(per_i, hn::Zero(s)));
         Ints rise = hn::Add(of_pixel, hn::Add(of_pixel, of_pixel));
@@ -207,7 +207,7 @@ class TriangleSetUp {
               hn::Mul(hn::Add(hn::Abs(per_j), hn::Abs(per_i)), hn::Set(s, tile_.offsets->reach));
           rise = hn::Add(rise, hn::Add(hn::ShiftRight<kSubPixelBits>(moved), hn::Set(s, 1)));
         }
-        hn::Store(rise, s, out.rise[k] + t);
+        hn::Store(hn::Add(at_first, rise), s, out.greatest_in_first_block[k] + t);
       }
     }
   }

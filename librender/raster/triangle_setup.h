@@ -32,8 +32,7 @@ struct alignas(64) SetUpTriangles {
   std::int32_t per_j[3][kSetUpBatch], per_i[3][kSetUpBatch];
   std::int32_t at_first_block[3][kSetUpBatch];  // constant at the first pixel of the first block
   std::int32_t remainder[3][kSetUpBatch];       // 256ths of the constants that rounding took
-  // What is added to an edge function at the first pixel of a block for its greatest there.
-  std::int32_t rise[3][kSetUpBatch];
+  std::int32_t greatest_in_first_block[3][kSetUpBatch];
   std::uint32_t blocks[kSetUpBatch], number[kSetUpBatch];
   // 1/U at the first pixel of the first block, its gradient, and its range.
   float at_first[kSetUpBatch], gradient_x[kSetUpBatch], gradient_y[kSetUpBatch];
