@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "librender/raster/across_lanes-inl.h"
 #include "librender/raster/block_lanes.h"
 #include "librender/raster/compaction-inl.h"
 #include "librender/raster/crossing_fates.h"
@@ -41,6 +42,8 @@ struct alignas(64) BlockList {
   // 512 is 4 % faster than 128: least depths are loaded again later after they were stored one by one.
   static constexpr std::size_t kLong = 512;
   static constexpr std::size_t kRoom = kLong + 2 * kPatchBlocks;
+  // These are drawn together, and their least 1/U found.
+  static constexpr std::size_t kDrawnAtOnce = 4;
   // From the lowest bit: 8 of the block in the tile, 4 of its column and 4 of its row from the triangle's
   // first block, then the triangle in the batch.
   std::int32_t entry[kRoom];
@@ -50,6 +53,8 @@ struct alignas(64) BlockList {
   float inverse_u[kRoom];
 };
 static_assert(kSetUpBatch == 16 && kBlocksAcross == 16);
+// An edge function that no step inside a block brings back.
+inline constexpr std::int32_t kFarOutside = -static_cast<std::int32_t>(kSaturation);
 
 // Of a patch's blocks, from the entry of its first.
 alignas(64) inline constexpr auto kNeighbourEntry = [] {
@@ -79,14 +84,23 @@ constexpr hn::RebindToUnsigned<FloatTag> kUnsigned;
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 constexpr std::size_t kVectors = kBlockPixels / kLanes;  // of a block
 
-// MinOfLanes copies its result to all lanes of wide vectors, which costs as much as a step of the search.
-template <class D>
-HWY_INLINE float leastLane(D d, hn::Vec<D> values) {
-  if constexpr (hn::MaxLanes(D()) <= 4) {
-    return hn::GetLane(hn::MinOfLanes(d, values));
+// Adds `bits` to `all` where a mask says so.
+template <class Mask>
+HWY_INLINE Ints withBits(Ints all, Mask where, Ints bits) {
+  if constexpr (kLanes == 16) {
+    return hn::IfThenElse(where, hn::Or(all, bits), all);
   } else {
-    const hn::Half<D> half;
-    return leastLane(half, hn::Min(LowerHalf(half, values), UpperHalf(half, values)));
+    return hn::Or(all, hn::IfThenElseZero(where, bits));
+  }
+}
+
+// One more where a mask says so.
+template <class Mask>
+HWY_INLINE Ints withOneMore(Ints all, Mask where) {
+  if constexpr (kLanes == 16) {
+    return hn::IfThenElse(where, hn::Add(all, hn::Set(kInt, 1)), all);
+  } else {
+    return hn::Sub(all, hn::VecFromMask(kInt, where));
   }
 }
 
@@ -146,15 +160,11 @@ class TileRasterizer {
     std::uint32_t* owner;
     float* least;
   };
-  // Samples.
-  struct Drawn {
-    std::size_t tested = 0, written = 0;
-  };
-  // Of a batch, and how far they were after each triangle's last block: two that are equal tell of a triangle
-  // without any. Noting that of each block would wait for the note of the block before.
-  struct Progress {
-    Drawn all;
-    std::uint32_t tested[kSetUpBatch] = {}, written[kSetUpBatch] = {};
+  // What became of a batch, for each lane of its blocks: a bit for each triangle that covers a sample there
+  // and for each that was seen there; how many samples there were tested and written.
+  struct Outcome {
+    Ints covers, seen;
+    Ints tested, written;
   };
   // Of up to 32 triangles, a bit each: those that cover a sample, those that were found hidden somewhere.
   struct Fates {
@@ -211,7 +221,7 @@ class TileRasterizer {
     PixelSteps steps[kSetUpBatch];
     BlockList list;
     list.count = 0;
-    Progress progress;
+    Outcome outcome{hn::Zero(kInt), hn::Zero(kInt), hn::Zero(kInt), hn::Zero(kInt)};
     std::uint32_t hidden = 0;
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t blocks = batch.blocks[t];
@@ -223,26 +233,25 @@ class TileRasterizer {
       const std::int32_t first_block = first_i * kBlocksAcross + first_j;
       bool behind = false;
       if (columns > kPatchSide || rows > kPatchSide) {
-        behind = listPatches<kCut>(batch, t, steps, first_block, columns, rows, list, progress);
+        behind = listPatches<kCut>(batch, t, steps, first_block, columns, rows, list, outcome);
       } else {
         Patch patch;
         setPatch(batch, t, steps[t], patch);
         behind = listPatch(batch, t, patch, first_block, 0, 0, columns, rows, list);
-        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
+        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, outcome);
       }
       hidden |= (behind ? 1U : 0U) << t;
     }
-    drawList<kCut>(batch, steps, list, progress);
-    std::uint32_t tested = 0, written = 0, covers = 0, crosses = 0;
+    drawList<kCut>(batch, steps, list, outcome);
+    const std::uint32_t covers = orOfLanes(kUnsigned, hn::BitCast(kUnsigned, outcome.covers)),
+                        seen = orOfLanes(kUnsigned, hn::BitCast(kUnsigned, outcome.seen));
+    std::uint32_t crosses = 0;
     for (std::size_t t = 0; t < count; ++t) {
-      covers |= (progress.tested[t] > tested ? 1U : 0U) << t;
       crosses |= (placed.crossing[t] != 0 ? 1U : 0U) << t;
-      buffer_.wrote[batch.number[t]] = progress.written[t] > written ? 1 : 0;
-      tested = std::max(tested, progress.tested[t]);
-      written = std::max(written, progress.written[t]);
+      buffer_.wrote[batch.number[t]] = static_cast<std::uint8_t>(seen >> t & 1);
     }
-    counts_.tested += progress.all.tested;
-    counts_.written += progress.all.written;
+    counts_.tested += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(kInt, outcome.tested)));
+    counts_.written += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(kInt, outcome.written)));
     settle(
         {(1U << count) - 1, covers, hidden}, crosses, [&](std::size_t t) { return placed.crossing[t]; },
         crossing);
@@ -300,7 +309,7 @@ class TileRasterizer {
     steps.shared[0] = batch.least[t];
     steps.shared[1] = batch.greatest[t];
     steps.shared[2] = std::bit_cast<float>(batch.number[t]);
-    steps.shared[3] = 0;
+    steps.shared[3] = std::bit_cast<float>(1U << t);
   }
 
   // Of the sixteen blocks of a patch, block by block.
@@ -326,14 +335,14 @@ class TileRasterizer {
   template <bool kCut>
   HWY_NOINLINE bool listPatches(const SetUpTriangles& batch, std::size_t t, const PixelSteps* steps,
                                 std::int32_t first_block, std::int32_t columns, std::int32_t rows,
-                                BlockList& list, Progress& progress) {
+                                BlockList& list, Outcome& outcome) {
     Patch row;
     setPatch(batch, t, steps[t], row);
     bool hidden = false;
     for (std::int32_t i = 0; i < rows; i += kPatchSide) {
       Patch patch = row;
       for (std::int32_t j = 0; j < columns; j += kPatchSide) {
-        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, progress);
+        if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, outcome);
         hidden |= listPatch(batch, t, patch, first_block, j, i, columns, rows, list);
         for (std::size_t k = 0; k < 3; ++k) {
           const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_j[k][t]);
@@ -382,10 +391,12 @@ class TileRasterizer {
 
   // Where the listed blocks begin.
   static HWY_INLINE void locate(const SetUpTriangles& batch, BlockList& list) {
-    // The last vector reaches beyond the list.
+    // What is drawn together with the last ones, and the rest of a vector.
     for (std::size_t v = 0; v < kBlockPixels; v += kLanes)
       hn::StoreU(hn::Zero(kInt), kInt, list.entry + list.count + v);
-    for (std::size_t n = 0; n < list.count; n += kLanes) {
+    const std::size_t end =
+        (list.count + BlockList::kDrawnAtOnce - 1) / BlockList::kDrawnAtOnce * BlockList::kDrawnAtOnce;
+    for (std::size_t n = 0; n < end; n += kLanes) {
       const Ints entry = hn::Load(kInt, list.entry + n);
       const Ints t = hn::ShiftRight<16>(entry);
       // Four pixels a block.
@@ -404,40 +415,44 @@ class TileRasterizer {
 
   template <bool kCut>
   HWY_INLINE void drawList(const SetUpTriangles& batch, const PixelSteps* steps, BlockList& list,
-                           Progress& progress) const {
+                           Outcome& outcome) const {
     // In registers, which members would not be.
     const Buffers buffers{buffer_.inverse_u.data(), buffer_.triangle.data(), buffer_.least.data()};
     locate(batch, list);
-    Drawn all = progress.all;
-    for (std::size_t n = 0; n < list.count; ++n) {
-      const auto t = static_cast<std::size_t>(list.entry[n] >> 16),
-                 block = static_cast<std::size_t>(list.entry[n] & 0xFF);
-      const std::int32_t edge[3] = {list.edge[0][n], list.edge[1][n], list.edge[2][n]};
-      const Drawn drawn = drawBlock<kCut>(buffers, steps[t], edge, list.inverse_u[n], block);
-      all.tested += drawn.tested;
-      all.written += drawn.written;
-      progress.tested[t] = static_cast<std::uint32_t>(all.tested);
-      progress.written[t] = static_cast<std::uint32_t>(all.written);
+    // Behind the last of them are entries that cover nothing.
+    for (std::size_t n = 0; n < BlockList::kDrawnAtOnce; ++n) list.edge[0][list.count + n] = kFarOutside;
+    Outcome now = outcome;
+    for (std::size_t n = 0; n < list.count; n += BlockList::kDrawnAtOnce) {
+      Floats furthest[BlockList::kDrawnAtOnce];
+      for (std::size_t k = 0; k < BlockList::kDrawnAtOnce; ++k)
+        furthest[k] = drawBlock<kCut>(buffers, steps, list, n + k, now);
+      float least[BlockList::kDrawnAtOnce];
+      leastOfFour(kFloat, furthest, least);
+      for (std::size_t k = 0; k < BlockList::kDrawnAtOnce; ++k)
+        buffers.least[list.entry[n + k] & 0xFF] = least[k];
     }
-    progress.all = all;
+    outcome = now;
     list.count = 0;
   }
 
-  // `edge` and `u`: at the block's first pixel.
+  // The block of entry `n`: the least of its 1/U afterwards, in each lane.
   template <bool kCut>
-  HWY_INLINE Drawn drawBlock(const Buffers& buffers, const PixelSteps& steps, const std::int32_t (&edge)[3],
-                             float u, std::size_t block) const {
+  HWY_INLINE Floats drawBlock(const Buffers& buffers, const PixelSteps* all_steps, const BlockList& list,
+                              std::size_t n, Outcome& outcome) const {
+    const auto t = static_cast<std::size_t>(list.entry[n] >> 16),
+               block = static_cast<std::size_t>(list.entry[n] & 0xFF);
+    const PixelSteps& steps = all_steps[t];
     float* const depth = buffers.inverse_u + block * kBlockPixels;
     std::uint32_t* const owner = buffers.owner + block * kBlockPixels;
-    const Floats first = hn::Set(kFloat, u);
+    const Floats first = hn::Set(kFloat, list.inverse_u[n]);
     const FourFloats shared(steps.shared);
     const Floats least = shared.get<0>(), greatest = shared.get<1>();
     const auto number = hn::BitCast(kUnsigned, shared.get<2>());
-    Drawn drawn;
+    const Ints bit = hn::BitCast(kInt, shared.get<3>());
     Floats furthest = hn::Zero(kFloat);
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto at = [&](std::size_t k) {
-        return hn::Add(hn::Set(kInt, edge[k]), hn::Load(kInt, steps.edge[k] + v * kLanes));
+        return hn::Add(hn::Set(kInt, list.edge[k][n]), hn::Load(kInt, steps.edge[k] + v * kLanes));
       };
       auto covered = hn::Gt(hn::Or(hn::Or(at(0), at(1)), at(2)), hn::Set(kInt, -1));
       if constexpr (kCut) {
@@ -450,20 +465,23 @@ class TileRasterizer {
                 hn::Lt(hn::Load(kInt, kLaneI + v * kLanes), hn::Set(kInt, rows_ - block_i * kBlockSide))));
       }
       const Floats old = hn::Load(kFloat, depth + v * kLanes);
-      const Floats value =
-          hn::Min(hn::Max(hn::Add(first, hn::Load(kFloat, steps.inverse_u + v * kLanes)), least), greatest);
-      const auto pass = hn::And(covered, hn::RebindMask(kInt, hn::Gt(value, old)));
-      const Floats now = hn::IfThenElse(hn::RebindMask(kFloat, pass), value, old);
+      // Zero is never nearer than what is there.
+      const Floats value = hn::IfThenElseZero(
+          hn::RebindMask(kFloat, covered),
+          hn::Min(hn::Max(hn::Add(first, hn::Load(kFloat, steps.inverse_u + v * kLanes)), least), greatest));
+      const auto pass = hn::RebindMask(kInt, hn::Gt(value, old));
+      const Floats now = hn::Max(value, old);
       hn::Store(now, kFloat, depth + v * kLanes);
       furthest = v == 0 ? now : hn::Min(furthest, now);
       const auto owners =
           hn::IfThenElse(hn::RebindMask(kUnsigned, pass), number, hn::Load(kUnsigned, owner + v * kLanes));
       hn::Store(owners, kUnsigned, owner + v * kLanes);
-      drawn.tested += hn::CountTrue(kInt, covered);
-      drawn.written += hn::CountTrue(kInt, pass);
+      outcome.covers = withBits(outcome.covers, covered, bit);
+      outcome.seen = withBits(outcome.seen, pass, bit);
+      outcome.tested = withOneMore(outcome.tested, covered);
+      outcome.written = withOneMore(outcome.written, pass);
     }
-    buffers.least[block] = leastLane(kFloat, furthest);
-    return drawn;
+    return furthest;
   }
 
   const Tile& tile_;
