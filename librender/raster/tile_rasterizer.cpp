@@ -56,6 +56,17 @@ static_assert(kSetUpBatch == 16 && kBlocksAcross == 16);
 // An edge function that no step inside a block brings back.
 inline constexpr std::int32_t kFarOutside = -static_cast<std::int32_t>(kSaturation);
 
+// Negative for those blocks of a patch that lie right of or below the one a row of this is for: compared and
+// combined for each patch they took longer than one load.
+alignas(64) inline constexpr auto kBeside = [] {
+  std::array<std::array<std::int32_t, kPatchBlocks>, kPatchBlocks> beside{};
+  for (std::size_t n = 0; n < kPatchBlocks; ++n) {
+    for (std::size_t k = 0; k < kPatchBlocks; ++k)
+      beside[n][k] = kLaneJ[k] > kLaneJ[n] || kLaneI[k] > kLaneI[n] ? -1 : 0;
+  }
+  return beside;
+}();
+
 // Of a patch's blocks, from the entry of its first.
 alignas(64) inline constexpr auto kNeighbourEntry = [] {
   std::array<std::int32_t, kPatchBlocks> entry{};
@@ -246,8 +257,10 @@ class TileRasterizer {
     const std::uint32_t covers = orOfLanes(kUnsigned, hn::BitCast(kUnsigned, outcome.covers)),
                         seen = orOfLanes(kUnsigned, hn::BitCast(kUnsigned, outcome.seen));
     std::uint32_t crosses = 0;
+    for (std::size_t t = 0; t < kSetUpBatch; t += kLanes)
+      crosses |= laneBits(hn::Ne(hn::Load(kUnsigned, placed.crossing + t), hn::Zero(kUnsigned))) << t;
+    crosses &= (1U << count) - 1;
     for (std::size_t t = 0; t < count; ++t) {
-      crosses |= (placed.crossing[t] != 0 ? 1U : 0U) << t;
       buffer_.wrote[batch.number[t]] = static_cast<std::uint8_t>(seen >> t & 1);
     }
     counts_.tested += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(kInt, outcome.tested)));
@@ -339,20 +352,24 @@ class TileRasterizer {
     Patch row;
     setPatch(batch, t, steps[t], row);
     bool hidden = false;
+    static_assert(kBlockSide * kPatchSide == 1 << 4);
+    Ints along[3], down[3];  // to the next patch
+    for (std::size_t k = 0; k < 3; ++k) {
+      along[k] = hn::ShiftLeft<4>(hn::Set(kInt, batch.per_j[k][t]));
+      down[k] = hn::ShiftLeft<4>(hn::Set(kInt, batch.per_i[k][t]));
+    }
     for (std::int32_t i = 0; i < rows; i += kPatchSide) {
       Patch patch = row;
       for (std::int32_t j = 0; j < columns; j += kPatchSide) {
         if (list.count >= BlockList::kLong) drawList<kCut>(batch, steps, list, outcome);
         hidden |= listPatch(batch, t, patch, first_block, j, i, columns, rows, list);
         for (std::size_t k = 0; k < 3; ++k) {
-          const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_j[k][t]);
           for (std::size_t v = 0; v < kVectors; ++v)
-            patch.greatest[k][v] = hn::Add(patch.greatest[k][v], step);
+            patch.greatest[k][v] = hn::Add(patch.greatest[k][v], along[k]);
         }
       }
       for (std::size_t k = 0; k < 3; ++k) {
-        const Ints step = hn::Set(kInt, kBlockSide * kPatchSide * batch.per_i[k][t]);
-        for (std::size_t v = 0; v < kVectors; ++v) row.greatest[k][v] = hn::Add(row.greatest[k][v], step);
+        for (std::size_t v = 0; v < kVectors; ++v) row.greatest[k][v] = hn::Add(row.greatest[k][v], down[k]);
       }
     }
     return hidden;
@@ -367,16 +384,18 @@ class TileRasterizer {
     const std::int32_t first_of_patch = first_block + i * kBlocksAcross + j;
     const Ints first_entry =
         hn::Set(kInt, first_of_patch + (j << 8) + (i << 12) + (static_cast<std::int32_t>(t) << 16));
-    const Ints beyond_j = hn::Set(kInt, columns - j), beyond_i = hn::Set(kInt, rows - i);
+    const auto last_j = static_cast<std::size_t>(std::min(columns - j, kPatchSide)) - 1,
+               last_i = static_cast<std::size_t>(std::min(rows - i, kPatchSide)) - 1;
+    const std::int32_t* const beside = kBeside[last_i * kPatchSide + last_j].data();
     const float* const least = buffer_.least.data() + first_of_patch;
     auto hidden = hn::FirstN(kInt, 0);
     std::size_t count = list.count;
     for (std::size_t n = 0; n < kVectors; ++n) {
       const std::size_t v = n * kLanes;
-      auto touched =
-          hn::And(hn::Lt(hn::Load(kInt, kLaneJ + v), beyond_j), hn::Lt(hn::Load(kInt, kLaneI + v), beyond_i));
-      const Ints signs = hn::Or(hn::Or(patch.greatest[0][n], patch.greatest[1][n]), patch.greatest[2][n]);
-      touched = hn::And(touched, hn::Gt(signs, hn::Set(kInt, -1)));
+      const Ints signs =
+          hn::Or(hn::Or(hn::Or(patch.greatest[0][n], patch.greatest[1][n]), patch.greatest[2][n]),
+                 hn::Load(kInt, beside + v));
+      const auto touched = hn::Gt(signs, hn::Set(kInt, -1));
       const Floats there = everyFourth(
           kFloat, [&](std::size_t lane) { return least + kNeighbour[v + lane]; }, 0);
       const auto nearer = hn::RebindMask(kInt, hn::Gt(hn::Set(kFloat, batch.greatest[t]), there));

@@ -165,8 +165,10 @@ class TriangleSetUp {
         const auto scaled = hn::Floor(hn::Mul(constant, hn::Set(d, 1.0 / kSubPixels)));
         const auto limited = hn::Min(hn::Max(scaled, hn::Set(d, -kSaturation)), hn::Set(d, kSaturation));
         hn::Store(hn::DemoteTo(half_int, limited), half_int, at_origin[k] + t);
-        const auto rest = hn::Sub(constant, hn::Mul(scaled, hn::Set(d, kSubPixels)));
-        hn::Store(hn::DemoteTo(half_int, rest), half_int, out.remainder[k] + t);
+        if (tile_.offsets != nullptr) {
+          const auto rest = hn::Sub(constant, hn::Mul(scaled, hn::Set(d, kSubPixels)));
+          hn::Store(hn::DemoteTo(half_int, rest), half_int, out.remainder[k] + t);
+        }
       }
       const auto at = [&](const float* p) { return hn::PromoteTo(d, hn::Load(half_float, p + t)); };
       const auto x0 = at(placed.x[0]), y0 = at(placed.y[0]), w0 = at(placed.inverse_u[0]);

@@ -31,7 +31,8 @@ struct alignas(64) PlacedTriangles {
 struct alignas(64) SetUpTriangles {
   std::int32_t per_j[3][kSetUpBatch], per_i[3][kSetUpBatch];
   std::int32_t at_first_block[3][kSetUpBatch];  // constant at the first pixel of the first block
-  std::int32_t remainder[3][kSetUpBatch];       // 256ths of the constants that rounding took
+  // 256ths of the constants that rounding took, if samples are moved.
+  std::int32_t remainder[3][kSetUpBatch];
   std::int32_t greatest_in_first_block[3][kSetUpBatch];
   std::uint32_t blocks[kSetUpBatch], number[kSetUpBatch];
   // 1/U at the first pixel of the first block, its gradient, and its range.
