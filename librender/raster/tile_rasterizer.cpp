@@ -27,8 +27,9 @@ inline constexpr std::int32_t kPatchSide = 4;
 inline constexpr std::size_t kPatchBlocks = kPatchSide * kPatchSide;
 static_assert(kPatchBlocks == kBlockPixels);
 
-// What the blocks of a triangle share: edge functions and 1/U from a block's first pixel, and with one load
-// for all three the least and the greatest 1/U and the bits of the triangle's number in the tile.
+// What the blocks of a triangle share: edge functions and 1/U from a block's first pixel, and to be loaded
+// together the least and the greatest 1/U and, as bits, the triangle's number in the tile and its bit among
+// those of the batch.
 struct alignas(64) PixelSteps {
   std::int32_t edge[3][kBlockPixels];
   float inverse_u[kBlockPixels];
@@ -37,7 +38,7 @@ struct alignas(64) PixelSteps {
 
 // Blocks that are to be drawn, in order: of several triangles, so that no loop ends at a triangle's end,
 // which processors guess badly for small ones.
-struct alignas(64) BlockList {
+struct BlockList {
   // Drawn when it has so many: what they show is known to the triangles after them. Of B's at 1920 x 1080,
   // 512 is 4 % faster than 128: least depths are loaded again later after they were stored one by one.
   static constexpr std::size_t kLong = 512;
@@ -46,12 +47,13 @@ struct alignas(64) BlockList {
   static constexpr std::size_t kDrawnAtOnce = 4;
   // From the lowest bit: 8 of the block in the tile, 4 of its column and 4 of its row from the triangle's
   // first block, then the triangle in the batch.
-  std::int32_t entry[kRoom];
-  std::size_t count;
+  alignas(64) std::int32_t entry[kRoom];
   // At the blocks' first pixels: found for all entries at once, not moved to the front patch by patch.
-  std::int32_t edge[3][kRoom];
-  float inverse_u[kRoom];
+  alignas(64) std::int32_t edge[3][kRoom];
+  alignas(64) float inverse_u[kRoom];
+  std::size_t count;
 };
+static_assert(BlockList::kRoom % 16 == 0);
 static_assert(kSetUpBatch == 16 && kBlocksAcross == 16);
 // An edge function that no step inside a block brings back.
 inline constexpr std::int32_t kFarOutside = -static_cast<std::int32_t>(kSaturation);
