@@ -18,7 +18,7 @@ namespace deltaz::HWY_NAMESPACE {
 // Some targets have no such operations; names are looked up where there are.
 // Joins the halves of a vector by two(a, b) until at most four lanes are left.
 template <class D, class Two>
-HWY_INLINE auto joinedToFour(D d, hwy::HWY_NAMESPACE::Vec<D> values, Two two) {
+HWY_INLINE auto joinedToFour([[maybe_unused]] D d, hwy::HWY_NAMESPACE::Vec<D> values, Two two) {
   if constexpr (hwy::HWY_NAMESPACE::MaxLanes(D()) <= 4) {
     return values;
   } else {
