@@ -210,6 +210,8 @@ class TileRasterizer {
 
   // Moves those behind the first kSetUpBatch, which are fewer than that, to the front.
   static HWY_INLINE void dropFirst(PlacedTriangles& placed) {
+    placed.count -= kSetUpBatch;
+    if (placed.count == 0) return;
     const auto move = [](auto* values) {
       std::memcpy(values, values + kSetUpBatch, kSetUpBatch * sizeof(*values));
     };
@@ -223,7 +225,6 @@ class TileRasterizer {
     move(placed.blocks);
     move(placed.number);
     move(placed.crossing);
-    placed.count -= kSetUpBatch;
   }
 
   template <bool kCut>
